@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/diagnostic.hpp"
+#include "base/input_bytes.hpp"
 #include "base/part_file.hpp"
 
 namespace bough {
@@ -71,11 +72,13 @@ struct FileRoles::Files {
 FileRoles::FileRoles() : files_(new Files) {
   const std::lock_guard lock(get_mutex());
   outer_ = std::exchange(Files::get_current(), files_);
+  detail::begin_keeping_inputs();
 }
 
 FileRoles::~FileRoles() {
   const std::lock_guard lock(get_mutex());
   Files::get_current() = outer_;
+  detail::end_keeping_inputs();
   delete files_;
 }
 

@@ -128,12 +128,12 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
   std::map<std::string, records::FlexBody> given, flex;
   for (auto& [name, body] : options.flex) given[place(name)] = std::move(body);
   std::map<std::string, std::string> flex_path;
-  for (auto& body : spec.bodies) {
-    if (body.file.empty() || flex.count(body.file)) continue;
+  const auto load = [&](records::BodyRecord& body) {
+    if (body.file.empty() || flex.count(body.file)) return;
     const auto given_rigid = find_rigid_part(spec, body.file, diagnostics);
     if (const auto found = given.find(place(body.file)); found != given.end()) {
       flex[body.file] = found->second;
-      continue;
+      return;
     }
     const auto file = resolve_beside(path, body.file);
     body.is_unreadable = true;
@@ -142,7 +142,7 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
       diagnostics.error("cli.no-body-file", body.at.file.empty() ? SourceLocation{path} : body.at,
                         "body \"" + body.name + "\": there is no file " + shorten_path(get_body_path(file)),
                         readers.advise_body ? readers.advise_body(file) : "correct the name");
-      continue;
+      return;
     }
     try {
       flex[body.file] = readers.body(file, diagnostics, given_rigid);
@@ -154,6 +154,14 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
                        path + (body.at.line > 0 ? ":" + std::to_string(body.at.line) : "");
         diagnostics.add(std::move(item));
       }
+    }
+  };
+  for (auto& body : spec.bodies) {
+    load(body);
+    for (const auto& level : body.levels) {
+      auto of_level = body;
+      of_level.file = level;
+      load(of_level);
     }
   }
   // A file with errors in its text ends the load here. Else loading continues, to report all errors of bodies, hinges,

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "base/diagnostic.hpp"
+#include "base/number_text.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/residual.hpp"
@@ -73,12 +73,6 @@ MatrixXd take_fdofs(const fe::Model& model, const Eigen::Ref<const MatrixXd>& U)
       X.row(i) = U.row(row);
   }
   return X;
-}
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
 }
 
 /// Some modes of a system, made better by the strain of its elements.
@@ -306,8 +300,8 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
     const double change = f_now > 0 ? std::abs(f_now - f_old) / f_now : 1;
     if (change > kMatters && ++num_changed <= 3) {
       result.changes += (num_changed > 1 ? ", " : "") + std::string("mode ") + std::to_string(soft[i] + 1) + " from " +
-                        number_text(f_old) + " to " + number_text(f_now) + " Hz";
-      if (change < 0.1) result.changes += " (by " + number_text(100 * change) + " %)";
+                        show_number(f_old, 4) + " to " + show_number(f_now, 4) + " Hz";
+      if (change < 0.1) result.changes += " (by " + show_number(100 * change, 4) + " %)";
     }
   }
   if (num_changed > 3) result.changes += " and " + std::to_string(num_changed - 3) + " more";
@@ -323,8 +317,8 @@ void warn_of_lost_digits(const Restored& restored, Diagnostics& diagnostics) {
       "modal.lost-digits", {},
       "the sums of the assembled stiffness matrix have lost digits of soft modes; by the strain of the elements " +
           (restored.changes.empty() ? "the modes are as they were" : restored.changes) +
-          (is_sure              ? ", right to about " + number_text(std::max(1e-15, restored.error))
-           : restored.error < 1 ? ", not reliable: they may be off by " + number_text(restored.error) + " and more"
+          (is_sure              ? ", right to about " + show_number(std::max(1e-15, restored.error), 4)
+           : restored.error < 1 ? ", not reliable: they may be off by " + show_number(restored.error, 4) + " and more"
                                 : ", not reliable: K has no digit of them, and others may be missing"),
       restored.stiffest.empty()
           ? "a coarser mesh keeps more digits: elements far shorter than the waves of the modes only add round-off"

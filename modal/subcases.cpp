@@ -98,7 +98,8 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   std::optional<fe::Model> own;
   const auto& b = cases.buckling;
   const bool is_same = ((b.spc == 0 && b.mpc == 0) || (b.spc == cases.statics.spc && b.mpc == cases.statics.mpc)) &&
-                       model.subcase().initial_temperature == cases.statics.initial_temperature;
+                       model.subcase().initial_temperature == cases.statics.initial_temperature &&
+                       model.subcase().material_temperature == cases.statics.material_temperature;
   // The load to scale acts on the preloaded structure, unless its subcase names a separate preload.
   const int preload = cases.statics.preload;
   const bool is_own = preload != 0 && preload != get_preloaded(deck, cases).preload;

@@ -130,8 +130,8 @@ inline constexpr double kDependentDirection = 1e-10;
 /// Load left after the inertia of the body balances it, over the load. Above: soft residual vectors are lost. Below:
 /// roundoff of a uniform acceleration becomes one.
 inline constexpr double kBalancedLoad = 1e-10;
-/// Flexibility FᵀK⁻¹F of a load over the least that it has in the f-set, (FᵀF)² / FᵀKF: less is a load on held dofs.
-inline constexpr double kHeldFlexibility = 1e-8;
+/// Forces K X of the static solution X of a load, over the load: less is a load on held dofs, where X is roundoff.
+inline constexpr double kHeldLoad = 1e-5;
 /// Mass of a residual vector as its load feels it, over that of the rigid body: less is no mass, as of a turn of a grid
 /// about the normal of shells. The solver takes pivots above 1e-12; ten times more keeps a digit. Shares of vectors
 /// that have mass are above 1e-6.

@@ -32,6 +32,7 @@ std::vector<Face> list_faces(const std::string& type) {
   if (type.starts_with("tri")) return {{0, 1, 2, 2}};
   if (type.starts_with("quad")) return {{0, 1, 2, 3}};
   if (type.starts_with("tetra")) return {{0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {0, 3, 2, 2}};
+  if (type.starts_with("pyramid")) return {{0, 3, 2, 1}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}};
   if (type.starts_with("penta")) return {{0, 1, 2, 2}, {3, 5, 4, 4}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
   if (type.starts_with("hexa"))
     return {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
@@ -39,7 +40,8 @@ std::vector<Face> list_faces(const std::string& type) {
 }
 
 bool is_solid(const std::string& type) {
-  return type.starts_with("tetra") || type.starts_with("penta") || type.starts_with("hexa");
+  return type.starts_with("tetra") || type.starts_with("pyramid") || type.starts_with("penta") ||
+         type.starts_with("hexa");
 }
 
 class DrawingBuilder {

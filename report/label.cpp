@@ -21,6 +21,12 @@ std::string make_density_unit(const std::string& unit, const std::string& time_u
   return square + (time_unit == "ms" ? "/kHz" : " " + time_unit);
 }
 
+std::string write_powers(std::string label) {
+  for (const auto& [plain, raised] : {std::pair{"^2", "²"}, {"^3", "³"}, {"^4", "⁴"}})
+    for (auto at = label.find(plain); at != std::string::npos; at = label.find(plain, at)) label.replace(at, 2, raised);
+  return label;
+}
+
 void label_units(Plot& plot) {
   const Curve* first = nullptr;
   bool is_common = true;

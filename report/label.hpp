@@ -14,6 +14,9 @@ std::string label_frequency(const std::string& time_unit);
 /// the unit of the curve is.
 std::string make_density_unit(const std::string& unit, const std::string& time_unit);
 
+/// Writes the powers of units for a picture: "kg m^2/s" becomes "kg m²/s". Files and tables of text keep "^".
+std::string write_powers(std::string label);
+
 /// Puts the unit of the curves on the y axis; if curves have several units, into their labels.
 void label_units(Plot& plot);
 

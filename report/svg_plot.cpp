@@ -10,6 +10,7 @@
 #include "base/diagnostic.hpp"
 #include "base/xml_text.hpp"
 #include "report/axis.hpp"
+#include "report/label.hpp"
 #include "report/thin.hpp"
 
 namespace bough::report {
@@ -39,7 +40,7 @@ std::size_t count_characters(const std::string& utf8) {
 }
 
 std::string write_label(const std::string& label, int exponent) {
-  std::string text = escape_xml(label);
+  std::string text = escape_xml(write_powers(label));
   if (exponent != 0) {
     std::string power = std::to_string(exponent);
     if (power[0] == '-') power.replace(0, 1, "\u2212");
@@ -163,7 +164,7 @@ std::string draw_axes(const Plot& plot, const Frame& f) {
   svg += "</g>\n<g font-size=\"14\" fill=\"#111111\" text-anchor=\"middle\">\n";
   svg += "<text x=\"" + number(f.left + f.width / 2) + "\" y=\"" + number(f.top + f.height + 46) + "\">" +
          write_label(plot.x_label, f.x.exponent) + "</text>\n";
-  svg += "<text transform=\"translate(22 " + number(f.top + f.height / 2) + ") rotate(-90)\">" +
+  svg += "<text transform=\"translate(17 " + number(f.top + f.height / 2) + ") rotate(-90)\">" +
          write_label(plot.y_label, f.y.exponent) + "</text>\n</g>\n";
   return svg;
 }
@@ -351,7 +352,7 @@ double draw_legend(const Plot& plot, double top, std::string& svg) {
   double x = kLeft, y = top;
   bool any = false;
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
-    const std::string& label = plot.curves[i].label;
+    const std::string label = write_powers(plot.curves[i].label);
     if (label.empty() || (plot.y_max > plot.y_min && !is_in_view(plot.curves[i], plot.y_min, plot.y_max))) continue;
     const double width = 36 + kCharacter * static_cast<double>(count_characters(label)) + 22;
     if (any && x + width > kWidth - kRight) {

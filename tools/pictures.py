@@ -82,7 +82,7 @@ STRESS = """(() => { const s = document.querySelector('[aria-label="colour by"]'
   const press = (key, times, shiftKey) => { for (let k = 0; k < times; ++k)
     document.querySelector('[data-view=modes] canvas')
       .dispatchEvent(new KeyboardEvent('keydown', { key, shiftKey })); };
-  press('+', 7, false); press('ArrowLeft', 8, true); press('ArrowDown', 9, true); })()"""
+  press('+', 6, false); press('ArrowLeft', 8, true); press('ArrowDown', 9, true); })()"""
 SHOW_ALL = "; [...document.querySelectorAll('.motion button')].find(b => b.textContent === 'all').click()"
 LOOK_ALONG_Z = "; [...document.querySelectorAll('.motion button')].find(b => b.textContent === 'z').click()"
 

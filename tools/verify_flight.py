@@ -94,17 +94,21 @@ def verify_satellites(b):
               "Basilisk, test_hingedRigidBodyStateEffector.py")
 
 
+def reduce_beam(b, name, length, held, properties):
+    """Body NAME of a beam of 40 CBARs along x, fixed at grid 1, of eight modes. held: components that 2 to 41 lack."""
+    deck = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "SPC1,1,123456,1", f"SPC1,1,{held},2,THRU,41",
+            *properties, *(f"GRID,{i + 1},,{i * length / 40!r},0.,0." for i in range(41)),
+            *(f"CBAR,{i + 1},1,{i + 1},{i + 2},0.,1.,0." for i in range(40)), "ENDDATA", ""]
+    write(b.folder, name + ".bdf", "\n".join(deck))
+    write(b.folder, name + ".toml", toml(section("body", name=name, deck=name + ".bdf", frame="fixed", interface=[1]),
+                                         section("body.modes", number=8), section("body.output", file=name + ".h5")))
+    b.bough(b.folder, "reduce", name + ".toml")
+
+
 def verify_wings(b):
     """Hub and two clamped wings: modes constrained (hub fixed) and unconstrained (hub turns), Hughes 1980."""
     length, density, bending, inertia = 4.0, 1.5, 60.0, 5.0
-    deck = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "SPC1,1,123456,1", "SPC1,1,1345,2,THRU,41",
-            f"MAT1,1,1.,1.,,{density!r}", f"PBAR,1,1,1.,{bending!r},{bending!r},1."]
-    deck += [f"GRID,{i + 1},,{i * length / 40!r},0.,0." for i in range(41)]
-    deck += [f"CBAR,{i + 1},1,{i + 1},{i + 2},0.,1.,0." for i in range(40)]
-    write(b.folder, "wing.bdf", "\n".join(deck + ["ENDDATA", ""]))
-    write(b.folder, "wing.toml", toml(section("body", name="wing", deck="wing.bdf", frame="fixed", interface=[1]),
-                                      section("body.modes", number=8), section("body.output", file="wing.h5")))
-    b.bough(b.folder, "reduce", "wing.toml")
+    reduce_beam(b, "wing", length, 1345, [f"MAT1,1,1.,1.,,{density!r}", f"PBAR,1,1,1.,{bending!r},{bending!r},1."])
 
     def system(**hub):
         return toml(table("body", "hub", mass=1.0, inertia=[inertia] * 3), table("body", "a", file="wing.h5"),

@@ -6,7 +6,7 @@ import scipy.integrate
 from scipy.optimize import brentq
 
 from toml_text import section, table, toml
-from verify_flight import Bench, write
+from verify_flight import Bench, reduce_beam
 
 MU, RADIUS = 3.986004418e14, 6.878e6
 RATE = math.sqrt(MU / RADIUS**3)
@@ -70,15 +70,8 @@ def calc_boom(is_across):
 
 def verify_boom(b):
     """Gravity-gradient boom of a deck: its bending lowers the libration, the tension of the tide stiffens it."""
-    deck = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "SPC1,1,123456,1", "SPC1,1,345,2,THRU,41",
-            f"MAT1,1,1.+4,1.+4,,{DENSITY!r}", f"PBAR,1,1,1.,{BENDING * 1e-4!r},{BENDING * 1e-4!r},1.",
-            f"CONM2,101,41,,{TIP!r}"]
-    deck += [f"GRID,{i + 1},,{i * LENGTH / 40!r},0.,0." for i in range(41)]
-    deck += [f"CBAR,{i + 1},1,{i + 1},{i + 2},0.,1.,0." for i in range(40)]
-    write(b.folder, "boom.bdf", "\n".join(deck + ["ENDDATA", ""]))
-    write(b.folder, "boom.toml", toml(section("body", name="boom", deck="boom.bdf", frame="fixed", interface=[1]),
-                                      section("body.modes", number=8), section("body.output", file="boom.h5")))
-    b.bough(b.folder, "reduce", "boom.toml")
+    reduce_beam(b, "boom", LENGTH, 345, [f"MAT1,1,1.+4,1.+4,,{DENSITY!r}", f"CONM2,101,41,,{TIP!r}",
+                                         f"PBAR,1,1,1.,{BENDING * 1e-4!r},{BENDING * 1e-4!r},1."])
     for is_across, what, axis in ((0, "in the plane", [0.0, 0.0, 1.0]), (1, "across", [0.0, 1.0, 0.0])):
         poles = b.linearize(make_orbit(
             table("body", "hub", mass=1.0, inertia=[HUB] * 3), table("body", "boom", file="boom.h5"),

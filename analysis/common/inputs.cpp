@@ -1,5 +1,7 @@
 #include "analysis/common/inputs.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -10,6 +12,7 @@
 #include "analysis/common/ranks.hpp"
 #include "analysis/common/superelements.hpp"
 #include "base/file_roles.hpp"
+#include "base/input_bytes.hpp"
 #include "fe/statics/build_model.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
@@ -35,7 +38,7 @@ void demand_file(const std::string& path) {
   if (is_stream)
     throw InputError("cli.no-file", {path}, "is a pipe or a device, not a regular file, and input is read twice",
                      "write it to a file first");
-  if (kind != fs::file_type::regular || !std::ifstream(path)) {
+  if (kind != fs::file_type::regular || ::access(path.c_str(), R_OK) != 0) {
     throw InputError("cli.no-file", {path},
                      kind == fs::file_type::directory ? "is a folder, not a file" : "no such file, or not readable",
                      "check the path");
@@ -56,9 +59,8 @@ void demand_kind(const std::string& path, const std::string& kind, const std::st
 
 void refuse_treetops_input(const std::string& path) {
   if (!has_suffix(path, ".int")) return;
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (text.find("GRID") != std::string::npos || text.find("BEGIN BULK") != std::string::npos) return;
+  const auto text = read_input(path);
+  if (text && (text->find("GRID") != std::string::npos || text->find("BEGIN BULK") != std::string::npos)) return;
   throw InputError("cli.wrong-file", {path}, "the file is a .INT of TREETOPS, which Bough does not read",
                    "describe the system in TOML: bough init lists examples to start from, bough edit asks for each key "
                    "(docs/coming-from-treetops.md)");
@@ -73,9 +75,7 @@ void refuse_deck(const std::string& path) {
 void demand_deck(const std::string& path) {
   demand_file(path);
   refuse_treetops_input(path);
-  std::string begin(8, '\0');
-  std::ifstream(path, std::ios::binary).read(begin.data(), 8);
-  const bool is_hdf5 = begin == "\x89HDF\r\n\x1a\n";
+  const bool is_hdf5 = read_input_head(path, 8) == "\x89HDF\r\n\x1a\n";
   if (!is_hdf5 && !has_suffix(path, ".toml")) return;
   throw InputError("cli.wrong-file", {path},
                    std::string("the file is ") + (is_hdf5 ? "HDF5" : "TOML") + ", expected a Nastran deck",

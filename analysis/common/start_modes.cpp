@@ -120,6 +120,26 @@ class ModeSetter {
     add(text);
   }
 
+  /// \param variant  of the fill levels, at the end of the run (solver::System::get_level).
+  void set_levels(const records::SystemSpec& before, const EarlierRows& rows, int variant) {
+    for (const auto& hinge : rows.hinges) {
+      const auto is_it = [&](const records::BodyRecord& body) { return body.name == hinge.body; };
+      const auto old = std::find_if(before.bodies.begin(), before.bodies.end(), is_it);
+      const int count = old == before.bodies.end() ? 1 : std::max(1, static_cast<int>(old->levels.size()));
+      const auto level = static_cast<std::size_t>(variant % count);
+      variant /= count;
+      if (count == 1 || old->levels[level] == old->file) continue;
+      const std::string text = fmt::format("body '{}' at level {}", hinge.body, level + 1);
+      const auto body = std::find_if(spec_.bodies.begin(), spec_.bodies.end(), is_it);
+      if (body == spec_.bodies.end() || static_cast<int>(body->levels.size()) != count) {
+        warn(text + ", but in this system it has other levels");
+        continue;
+      }
+      body->file = body->levels[level];
+      add(text);
+    }
+  }
+
   /// \param numbers  kConstraintNumbers of the checkpoint.
   void set_constraint(const ConstraintRecord& before, const Eigen::VectorXd& numbers) {
     const bool is_closed = numbers[0] > 0.5;
@@ -192,7 +212,9 @@ StartModes set_start_modes(records::SystemSpec& spec, const records::SystemSpec&
     return {};
   }
   const auto rows = find_rows(before, results);
-  if (discrete->size() != rows.num_u + kConstraintNumbers * std::ssize(before.constraints)) {
+  const bool has_levels = std::any_of(before.bodies.begin(), before.bodies.end(),
+                                      [](const records::BodyRecord& body) { return !body.levels.empty(); });
+  if (discrete->size() != rows.num_u + kConstraintNumbers * std::ssize(before.constraints) + (has_levels ? 1 : 0)) {
     setter.warn("modes of hinges and constraints that do not fit the system in the file");
     return {};
   }
@@ -219,6 +241,7 @@ StartModes set_start_modes(records::SystemSpec& spec, const records::SystemSpec&
     setter.set_constraint(constraint, discrete->segment(at, kConstraintNumbers));
     at += kConstraintNumbers;
   }
+  if (has_levels) setter.set_levels(before, rows, static_cast<int>(std::lround((*discrete)[discrete->size() - 1])));
   return setter.found();
 }
 

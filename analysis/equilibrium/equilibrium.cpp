@@ -49,7 +49,8 @@ EquilibriumAnswer find_equilibrium(const EquilibriumRequest& request, const Chec
   const auto files = collect_sources(request.file, loaded);
   check(files);
   solver::warn_of_latches(loaded.system, {request.file}, diagnostics);
-  auto plant = make_plant(loaded);
+  const auto made = make_plant(loaded);
+  auto& plant = *made;
   const auto start = plant.make_initial_point();
   EquilibriumAnswer answer;
   answer.found = solver::find_equilibrium(plant, start, {request.file});

@@ -1,6 +1,7 @@
 #include "analysis/export/export.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 
@@ -18,8 +19,7 @@
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/response_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
-#include "formats/nastran/reader.hpp"
-#include "formats/nastran/writer.hpp"
+#include "formats/nastran/whole_deck.hpp"
 #include "formats/toml/specs.hpp"
 
 namespace bough::analysis {
@@ -107,10 +107,22 @@ std::string make_shapes(const ExportRequest& request, Diagnostics& diagnostics) 
                    "give a file that bough modes or bough reduce wrote");
 }
 
+/// Relative names of ASSIGN begin in the folder of the deck: makes them begin in the folder of the new one.
+void move_assigned_files(records::Deck& deck, const ExportRequest& request) {
+  namespace fs = std::filesystem;
+  const auto get_folder = [](const std::string& file) { return fs::absolute(file).lexically_normal().parent_path(); };
+  const auto from = get_folder(request.file), to = request.output.empty() ? from : get_folder(request.output);
+  if (from == to) return;
+  for (auto& [unit, file] : deck.super.input4)
+    if (!file.path.empty() && fs::path(file.path).is_relative())
+      file.path = (from / file.path).lexically_normal().lexically_relative(to).string();
+}
+
 std::string make_bdf(const ExportRequest& request, Diagnostics& diagnostics) {
   demand_deck(request.file);
-  const auto deck = nastran::read_deck(request.file, {request.ignore_cards}, diagnostics);
+  auto deck = nastran::read_whole_deck(request.file, {request.ignore_cards}, diagnostics);
   diagnostics.throw_if_errors();
+  move_assigned_files(deck, request);
   nastran::WriteOptions options;
   if (request.fields == "small") options.fields = nastran::FieldFormat::Small;
   if (request.fields == "free") options.fields = nastran::FieldFormat::Free;

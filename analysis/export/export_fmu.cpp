@@ -131,9 +131,15 @@ class Packing {
           toml_files::quote_text(name + (flx_name->body_id > 0 ? ":" + std::to_string(flx_name->body_id) : "")));
       return;
     }
-    const auto name = choose_name(body.file, fs::path(embed::get_body_path(body.file)).stem().string(), ".flat");
-    if (files_.count(name) == 0) add(name, flat::format_flex_body(loaded_.flex.at(body.file)));
-    set(item, "file", toml_files::quote_text(name));
+    const auto add_flat = [&](const std::string& file) {
+      const auto name = choose_name(file, fs::path(embed::get_body_path(file)).stem().string(), ".flat");
+      if (files_.count(name) == 0) add(name, flat::format_flex_body(loaded_.flex.at(file)));
+      return toml_files::quote_text(name);
+    };
+    set(item, "file", add_flat(body.file));
+    std::string levels;
+    for (const auto& level : body.levels) levels += (levels.empty() ? "" : ", ") + add_flat(level);
+    if (!levels.empty()) set(item, "levels", "[" + levels + "]");
   }
 
   void add_table(const toml_files::TableItem& item, const records::FunctionRecord& function) {

@@ -3,6 +3,7 @@
 #include "analysis/common/body_files.hpp"
 #include "formats/flat/flex_body.hpp"
 #include "formats/flx/flx_file.hpp"
+#include "formats/hdf5/layouts.hpp"
 
 namespace bough::analysis {
 
@@ -67,6 +68,7 @@ InfoAnswer list_contents(const std::string& file) {
   const auto format = answer.info.attributes.find("format");
   if (format != answer.info.attributes.end() && format->second == "bough-results")
     answer.events = hdf5::read_events(file);
+  answer.faults = hdf5::find_layout_faults(answer.info);
   return answer;
 }
 

@@ -67,7 +67,8 @@ records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostic
     Diagnostics found;
     const auto loaded = load_system(request.file, found, request.start_from, set);
     auto plant = make_plant(loaded, request.open);
-    auto model = linearize_at(request, loaded, plant, find_point(request, loaded, plant, found), false, found);
+    auto point = find_point(request, loaded, plant, found);
+    auto model = linearize_at(request, loaded, *plant, std::move(point), false, found);
     keep_new(found, diagnostics);
     return model;
   };
@@ -87,8 +88,8 @@ records::LinearSweep sweep_run(const LinearizeRequest& request, const LoadedSyst
   const auto linearize = [&](const std::vector<double>& values) {
     Diagnostics found;
     auto point = run_to(loaded, plant, values.front(), found, &last);
-    if (request.equilibrium) point = find_rest(plant, std::move(point), request.file);
-    auto model = linearize_at(request, loaded, plant, std::move(point), false, found);
+    if (request.equilibrium) point = find_rest(*plant, std::move(point), request.file);
+    auto model = linearize_at(request, loaded, *plant, std::move(point), false, found);
     keep_new(found, diagnostics);
     return model;
   };
@@ -110,10 +111,10 @@ LoadedSystem load(const LinearizeRequest& request, Diagnostics& diagnostics) {
 
 }  // namespace
 
-solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedSystem& loaded, solver::Plant& plant,
-                                  Diagnostics& diagnostics) {
-  auto point = request.at ? run_to(loaded, plant, *request.at, diagnostics) : make_start(loaded, plant, diagnostics);
-  return request.equilibrium ? find_rest(plant, std::move(point), request.file) : point;
+solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedSystem& loaded,
+                                  std::unique_ptr<solver::Plant>& plant, Diagnostics& diagnostics) {
+  auto point = request.at ? run_to(loaded, plant, *request.at, diagnostics) : make_start(loaded, *plant, diagnostics);
+  return request.equilibrium ? find_rest(*plant, std::move(point), request.file) : point;
 }
 
 void check_sweep(const LinearizeRequest& request) {
@@ -135,7 +136,8 @@ void check_sweep(const LinearizeRequest& request) {
 records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics) {
   auto plant = make_plant(loaded, request.open);
   solver::warn_of_latches(loaded.system, {request.file}, diagnostics);
-  return linearize_at(request, loaded, plant, find_point(request, loaded, plant, diagnostics), true, diagnostics);
+  auto point = find_point(request, loaded, plant, diagnostics);
+  return linearize_at(request, loaded, *plant, std::move(point), true, diagnostics);
 }
 
 records::LinearModel linearize(const LinearizeRequest& request, const CheckFiles& check, Events& events) {

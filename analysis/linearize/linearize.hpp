@@ -36,8 +36,8 @@ using CheckFiles = std::function<void(const std::vector<std::string>& files)>;
 void check_sweep(const LinearizeRequest& request);
 
 /// The state to linearize about: start or time of the run, or the rest near it. Throws what these throw.
-solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedSystem& loaded, solver::Plant& plant,
-                                  Diagnostics& diagnostics);
+solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedSystem& loaded,
+                                  std::unique_ptr<solver::Plant>& plant, Diagnostics& diagnostics);
 /// The model of a system that is loaded; its source stays empty.
 records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics);
 /// Loads the system and makes its model, with its source. Throws what loading and linearizing throw.

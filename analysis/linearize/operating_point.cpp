@@ -28,7 +28,9 @@ class LastState final : public records::ResultSink {
 
 }  // namespace
 
-solver::Plant make_plant(const LoadedSystem& loaded, bool is_open) { return solver::Plant(loaded.system, is_open); }
+std::unique_ptr<solver::Plant> make_plant(const LoadedSystem& loaded, bool is_open) {
+  return std::make_unique<solver::Plant>(loaded.system, is_open);
+}
 
 solver::OperatingPoint make_start(const LoadedSystem& loaded, solver::Plant& plant, Diagnostics& diagnostics) {
   auto point = plant.make_initial_point();
@@ -40,8 +42,8 @@ solver::OperatingPoint make_start(const LoadedSystem& loaded, solver::Plant& pla
   return point;
 }
 
-solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, double t, Diagnostics& diagnostics,
-                              std::optional<records::Checkpoint>* last) {
+solver::OperatingPoint run_to(const LoadedSystem& loaded, std::unique_ptr<solver::Plant>& plant, double t,
+                              Diagnostics& diagnostics, std::optional<records::Checkpoint>* last) {
   auto spec = loaded.spec;
   auto& s = spec.simulation;
   const int nq = loaded.system.num_q(), nu = loaded.system.num_u();
@@ -51,7 +53,7 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
                      fmt::format("time {:g} lies before the start of the run, {:g}", t, s.start),
                      "give a later time with --at");
   }
-  if (t == s.start) return make_start(loaded, plant, diagnostics);
+  if (t == s.start) return make_start(loaded, *plant, diagnostics);
   s.duration = s.output_step = t - s.start;
   LastState sink;
   solver::SimulateOptions options;
@@ -75,7 +77,10 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
   const auto& state = sink.last().state;
   const auto* discrete = sink.last().find("discrete");
   solver::HybridSystem ode(loaded.system);
-  if (discrete && !ode.is_alike(*discrete)) {
+  const bool has_changed = discrete && !ode.is_alike(*discrete);
+  if (discrete) ode.set_memory(*discrete);
+  if (&plant->system() != &ode.system()) plant = std::make_unique<solver::Plant>(ode.system(), plant->is_open());
+  if (has_changed) {
     if (last)
       throw InputError(
           "linear.changed-system", s.at,
@@ -83,13 +88,12 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
                       "of a sweep have the same coordinates",
                       t),
           "linearize there by --at, or end the sweep before it by duration");
-    ode.set_memory(*discrete);
-    plant.set_modes(solver::get_discrete(ode.data()), t, state.head(nq));
+    plant->set_modes(solver::get_discrete(ode.data()), t, state.head(nq));
   }
   const auto* control = sink.last().find("control");
   Eigen::VectorXd memory;
   if (control) memory = control->tail(control->size() - 1);
-  return {t, state.head(nq), plant.restrict(state.segment(nq, nu)), state.segment(nq + nu, loaded.system.num_z()),
+  return {t, state.head(nq), plant->restrict(state.segment(nq, nu)), state.segment(nq + nu, loaded.system.num_z()),
           memory};
 }
 

@@ -14,9 +14,9 @@ using Eigen::VectorXd;
 
 /// Nastran's element types.
 const std::map<std::string, int>& list_types() {
-  static const std::map<std::string, int> types{{"CROD", 1},    {"CBEAM", 2},   {"CTUBE", 3},   {"CONROD", 10},
-                                                {"CELAS1", 11}, {"CELAS2", 12}, {"CELAS3", 13}, {"CELAS4", 14},
-                                                {"CQUAD4", 33}, {"CBAR", 34},   {"CTRIA3", 74}, {"CBUSH", 102}};
+  static const std::map<std::string, int> types{
+      {"CROD", 1},    {"CBEAM", 2},   {"CTUBE", 3}, {"CONROD", 10}, {"CELAS1", 11}, {"CELAS2", 12}, {"CELAS3", 13},
+      {"CELAS4", 14}, {"CQUAD4", 33}, {"CBAR", 34}, {"CTRIA3", 74}, {"CBUSH", 102}, {"CFAST", 126}};
   return types;
 }
 

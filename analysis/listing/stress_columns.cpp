@@ -25,9 +25,9 @@ constexpr double kBlank = std::numeric_limits<double>::quiet_NaN();
 
 /// Nastran's element types; plates of plies have others.
 int find_stress_type(const std::string& card, fe::StressKind kind) {
-  static const std::map<std::string, int> types{{"CROD", 1},    {"CBEAM", 2},  {"CTUBE", 3},   {"CONROD", 10},
-                                                {"CQUAD4", 33}, {"CBAR", 34},  {"CTETRA", 39}, {"CHEXA", 67},
-                                                {"CPENTA", 68}, {"CTRIA3", 74}};
+  static const std::map<std::string, int> types{{"CROD", 1},    {"CBEAM", 2},   {"CTUBE", 3},   {"CONROD", 10},
+                                                {"CQUAD4", 33}, {"CBAR", 34},   {"CTETRA", 39}, {"CHEXA", 67},
+                                                {"CPENTA", 68}, {"CTRIA3", 74}, {"CPYRAM", 255}};
   const std::string plain = records::get_card_of_group(card);
   if (kind == fe::StressKind::Ply) return plain == "CQUAD4" ? 95 : plain == "CTRIA3" ? 97 : 0;
   const auto found = types.find(plain);
@@ -169,7 +169,7 @@ VectorXd take_components(const fe::Element& element, const records::ElementStres
 /// Forces by element id, for bars and solids, whose columns need them.
 std::unordered_map<int, VectorXd> index_forces(const std::vector<records::ElementForces>& forces,
                                                const std::string& card) {
-  static const std::set<std::string> cards{"CBAR", "CTETRA", "CPENTA", "CHEXA"};
+  static const std::set<std::string> cards{"CBAR", "CTETRA", "CPENTA", "CHEXA", "CPYRAM"};
   std::unordered_map<int, VectorXd> index;
   if (cards.count(card) == 0) return index;
   for (const auto& block : forces) {
@@ -293,7 +293,7 @@ void keep_linear_columns(records::ListedElements& block) {
                                                        {34, {0, 1, 2, 3, 4, 8, 9, 10, 11}},
                                                        {39, {0, 8, 14, 1, 9, 15}},
                                                        {95, {0, 1, 2, 3, 4}}};
-  static const std::map<int, int> alike{{3, 1}, {10, 1}, {74, 33}, {67, 39}, {68, 39}, {97, 95}};
+  static const std::map<int, int> alike{{3, 1}, {10, 1}, {74, 33}, {67, 39}, {68, 39}, {255, 39}, {97, 95}};
   const auto like = alike.find(block.type);
   block.real = MatrixXd(block.real(Eigen::all, columns.at(like == alike.end() ? block.type : like->second)));
 }

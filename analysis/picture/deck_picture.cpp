@@ -127,7 +127,7 @@ class PictureBuilder {
       case records::ElementShape::Surface:
         return n == 3 ? "tri3" : "quad4";
       case records::ElementShape::Solid:
-        return n == 4 ? "tetra4" : n == 6 ? "penta6" : n == 8 ? "hexa8" : nullptr;
+        return n == 4 ? "tetra4" : n == 5 ? "pyramid5" : n == 6 ? "penta6" : n == 8 ? "hexa8" : nullptr;
       case records::ElementShape::None:
         break;
     }

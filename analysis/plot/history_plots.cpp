@@ -146,6 +146,9 @@ std::string find_dims(const hdf5::ResultsFile& results, const std::string& colum
   return found == results.dims.end() ? std::string() : found->second;
 }
 
+/// "tip:y" of "sensors/tip:y", as --sensor takes it; channels of other groups keep theirs.
+std::string shorten(const std::string& column) { return column.starts_with("sensors/") ? column.substr(8) : column; }
+
 /// Values of "name" or "name:2" in the table of a campaign.
 VectorXd find_outcome(const hdf5::OutcomeTable& table, const std::string& file, const std::string& name) {
   std::vector<std::string> known;
@@ -199,7 +202,7 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
           warn_of_shock_input(file, column.name, "of dimensions " + dims, diagnostics);
         const bool one_curve_a_file = sensors.size() == 1 && sensor.find(':') != std::string::npos;
         std::string label = files.size() > 1 ? fs::path(file).stem().string() : "";
-        if (files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + column.name;
+        if (files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + shorten(column.name);
         report::Curve curve{label, x, std::move(column.values), false};
         curve.unit = is_spectrum && choice.psd ? report::make_density_unit(column.unit, time_unit) : column.unit;
         if (!choice.window.empty()) cut_to_window(curve, results.time, choice.window);

@@ -178,7 +178,7 @@ void start_at_zero(Plot& plot) {
 void add_sweep(const records::LinearSweep& sweep, const LinearPlotChoice& choice, const std::string& prefix,
                Plot& plot) {
   const auto& kind = choice.kind;
-  if (kind == "campbell") plot.x_label = sweep.models.empty() ? sweep.parameter + " [rad/T]" : sweep.parameter;
+  if (kind == "campbell") plot.x_label = sweep.models.empty() ? sweep.parameter + " [rad/s]" : sweep.parameter;
   const double largest = sweep.frequency_hz.size() > 0 ? sweep.frequency_hz.maxCoeff() : 0;
   std::map<std::string, int> count_of;
   const auto make_name = [&](Index b) {

@@ -208,7 +208,10 @@ PlotAnswer choose_plots(const PlotRequest& request, Diagnostics& diagnostics) {
                    {"--window", !request.curves.window.empty()}});
   auto plot = is_campaign ? make_campaign_plot(request.files, request.sensors, request.curves, diagnostics)
                           : make_history_plot(request.files, request.sensors, request.curves, diagnostics);
-  plot.title = fmt::format("{}", fmt::join(request.sensors, ", "));
+  // Axes of --subplots are named after their channels already.
+  const bool names_run = request.curves.subplots && !is_campaign && request.files.size() == 1;
+  plot.title =
+      names_run ? fs::path(request.files.front()).stem().string() : fmt::format("{}", fmt::join(request.sensors, ", "));
   if (request.sensors.size() == 1) plot.y_label = request.sensors.front();
   const bool is_over_time = !is_campaign && request.curves.x.empty();
   if (is_over_time && request.curves.psd) plot.y_label += plot.y_label.empty() ? "PSD" : ", PSD";

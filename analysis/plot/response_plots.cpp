@@ -49,11 +49,26 @@ std::string list_start(const std::vector<std::string>& known) {
   return list + (known.size() > kMax ? ", ..." : "");
 }
 
-[[noreturn]] void throw_unknown(const std::string& file, const std::string& name,
-                                const std::vector<std::string>& known) {
+/// Draws the curves of the file that have the name; without one, error cli.unknown-channel.
+template <class Curves, class Draw>
+void draw_named(const std::string& file, const std::string& name, const Curves& curves, const Draw& draw) {
+  bool is_found = false;
+  std::vector<std::string> known;
+  for (const auto& curve : curves) {
+    known.push_back(curve.name);
+    if (!is_named(curve.name, name)) continue;
+    is_found = true;
+    draw(curve);
+  }
+  if (is_found) return;
   const auto nearest = find_nearest(name, known);
   throw InputError("cli.unknown-channel", {file}, "no curve \"" + name + "\"",
                    nearest.empty() ? list_start(known) : "did you mean \"" + nearest + "\"");
+}
+
+/// Beginning of the labels of the curves of a file: its name, where there are several.
+std::string name_file(const std::vector<std::string>& files, const std::string& file) {
+  return files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
 }
 
 void cut_window(const std::string& file, const std::vector<double>& window, std::vector<report::Plot>& plots) {
@@ -134,19 +149,12 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
       const auto& x = subcase.x;
       const bool is_wide = !is_over_time && x.size() > 1 && x(0) > 0 && x(x.size() - 1) > 30 * x(0);
       for (auto& plot : plots) plot.has_log_x = is_wide;
-      for (const auto& name : names) {
-        bool is_found = false;
-        std::vector<std::string> known;
-        for (const auto& curve : curves) {
-          known.push_back(curve.name);
-          if (!is_named(curve.name, name)) continue;
-          is_found = true;
-          std::string label = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
+      for (const auto& name : names)
+        draw_named(file, name, curves, [&](const auto& curve) {
+          std::string label = name_file(files, file);
           if (response.subcases.size() > 1) label += "subcase " + std::to_string(subcase.id) + " ";
           add_response_curve(curve, x, label + curve.name, has_decades, plots);
-        }
-        if (!is_found) throw_unknown(file, name, known);
-      }
+        });
     }
   }
   cut_window(files.front(), window, plots);
@@ -161,19 +169,12 @@ std::vector<report::Plot> make_density_plots(const std::vector<std::string>& fil
   plots[0].has_log_x = plots[0].has_log_y = true;
   for (const auto& file : files) {
     const auto densities = list_densities(file);
-    for (const auto& name : names) {
-      bool is_found = false;
-      std::vector<std::string> known;
-      for (const auto& density : densities) {
-        known.push_back(density.name);
-        if (!is_named(density.name, name)) continue;
-        is_found = true;
-        std::string label = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
-        label += fmt::format("{}{}, RMS {:.4g}", density.prefix, density.name, density.rms);
+    for (const auto& name : names)
+      draw_named(file, name, densities, [&](const auto& density) {
+        const std::string label =
+            name_file(files, file) + fmt::format("{}{}, RMS {:.4g}", density.prefix, density.name, density.rms);
         plots[0].curves.push_back({label, density.hz, density.psd});
-      }
-      if (!is_found) throw_unknown(file, name, known);
-    }
+      });
   }
   cut_window(files.front(), window, plots);
   return plots;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "analysis/common/inputs.hpp"
+#include "base/input_bytes.hpp"
 #include "formats/hdf5/grids_file.hpp"
 #include "formats/hdf5/sparse_file.hpp"
 #include "formats/nastran/reader.hpp"
@@ -105,10 +106,7 @@ records::Deck read_deck_of_points(const records::BodySpec& spec, Diagnostics& di
 
 bool is_hdf5(const std::string& path) {
   demand_file(path);
-  std::ifstream in(path, std::ios::binary);
-  char head[8] = {};
-  in.read(head, 8);
-  return in && std::string(head, 8) == "\x89HDF\r\n\x1a\n";
+  return read_input_head(path, 8) == "\x89HDF\r\n\x1a\n";
 }
 
 Eigen::MatrixXi read_dof_table(const std::string& path) {

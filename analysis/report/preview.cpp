@@ -79,11 +79,11 @@ report::Chapter make_pole_motion(const LinearizeRequest& request, const std::str
   const std::complex<double> lambda(model.poles.real[pole], model.poles.imag[pole]);
   auto plant = make_plant(loaded, request.open);
   const auto point = find_point(request, loaded, plant, diagnostics);
-  const int n = plant.num_dofs();
+  const int n = plant->num_dofs();
   Eigen::VectorXcd shape =
       statespace::calc_eigenvector(model.A, model.sample_time > 0 ? records::calc_z(model, pole) : lambda).head(n);
   double largest = 0;  // in visible displacements
-  for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(shape[i]) / plant.step(i));
+  for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(shape[i]) / plant->step(i));
   if (!(largest > 0))
     throw InputError("linear.no-pole", {request.file}, fmt::format("pole {} moves no body", pole + 1),
                      "choose another pole");
@@ -105,10 +105,10 @@ report::Chapter make_pole_motion(const LinearizeRequest& request, const std::str
     for (int k = 0; k <= kSamples; ++k) {
       const double angle = 2 * std::numbers::pi * k / kSamples;
       auto moved = point;
-      moved.q = plant.displace(point.q, (shape * std::polar(1.0, angle)).real());
-      const Eigen::VectorXd u = plant.calc_speeds(moved);
-      plant.evaluate(moved);
-      outputs.calc_sample({period * k / kSamples, plant.data(), moved.q, u, 0, 0});
+      moved.q = plant->displace(point.q, (shape * std::polar(1.0, angle)).real());
+      const Eigen::VectorXd u = plant->calc_speeds(moved);
+      plant->evaluate(moved);
+      outputs.calc_sample({period * k / kSamples, plant->data(), moved.q, u, 0, 0});
       sink.write_sample(outputs.keep_sample());
     }
     sink.end(true, "");

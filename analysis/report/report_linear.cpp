@@ -104,7 +104,7 @@ report::Chapter make_complex_chapter(const std::string& file) {
     const auto& points = is_critical ? rotors.critical : rotors.thresholds;
     if (points.empty()) continue;
     std::vector<report::HtmlTable::Column> columns{{is_critical && rotors.is_synchronous ? "mode" : "branch"},
-                                                   {"speed [rad/T]"},
+                                                   {"speed [rad/s]"},
                                                    {report::label_frequency("")},
                                                    {"whirl", true}};
     if (!is_critical) columns.push_back({"above this speed", true});

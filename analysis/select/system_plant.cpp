@@ -46,15 +46,15 @@ std::vector<std::vector<BodyMode>> SystemPlant::list_uses(const std::string& bod
 
 records::LinearModel SystemPlant::linearize(const LoadedSystem& loaded, Diagnostics& diagnostics) const {
   auto plant = make_plant(loaded, choice_.open);
-  if (const auto sampled = plant.list_sampled(); !choice_.open && !sampled.empty())
+  if (const auto sampled = plant->list_sampled(); !choice_.open && !sampled.empty())
     throw InputError("select.sampled", {file_},
                      "the loops are sampled (" + sampled.front() +
                          "), and costs are of continuous models: the modes would be ranked with these loops open",
                      "replace the sampled blocks by continuous ones, or rank without controllers (--open)");
-  auto point = choice_.at ? run_to(loaded, plant, *choice_.at, diagnostics) : plant.make_initial_point();
-  if (choice_.equilibrium) point = find_rest(plant, std::move(point), file_);
-  plant.hold_commands(point);
-  return solver::linearize(plant, point, {choice_.inputs, choice_.outputs, false, {}}, {file_}, diagnostics);
+  auto point = choice_.at ? run_to(loaded, plant, *choice_.at, diagnostics) : plant->make_initial_point();
+  if (choice_.equilibrium) point = find_rest(*plant, std::move(point), file_);
+  plant->hold_commands(point);
+  return solver::linearize(*plant, point, {choice_.inputs, choice_.outputs, false, {}}, {file_}, diagnostics);
 }
 
 records::LinearModel SystemPlant::linearize(Diagnostics& diagnostics) const { return linearize(loaded_, diagnostics); }

@@ -1,6 +1,7 @@
 #include "analysis/split/assembled_modes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/diagnostic.hpp"
@@ -16,6 +17,7 @@ using records::FlexBody;
 
 constexpr double kMassless = 1e-14;      ///< of the largest diagonal term or eigenvalue of K + σM: round-off
 constexpr double kDependentRow = 1e-10;  ///< of the largest pivot: a constraint that others contain
+constexpr double kStaticShift = 1e-6;    ///< of the lowest eigenvalue: inertia that holds a free structure
 
 /// M of [velocity of Bo, angular velocity, η̇] at rest, (6 + n) x (6 + n).
 MatrixXd calc_body_mass(const FlexBody& body) {
@@ -70,30 +72,41 @@ MatrixXd choose_axes(const Matrix6d& axes, unsigned held, bool takes_held) {
   return axes(Eigen::all, columns);
 }
 
-/// Coordinates of the assembly: those of the base hinge, then η of body after body.
+Index count_free(const PartLink& link) { return 6 - std::popcount(link.held); }
+
+/// Coordinates of the assembly: those of the hinges to the ground, then η of body after body.
 class Coordinates {
  public:
   Coordinates(const std::vector<const FlexBody*>& bodies, const Structure& structure, const Assembly& assembly)
       : bodies_(bodies), structure_(structure) {
-    const auto& base = assembly.links.front();
-    const MatrixXd free = choose_axes(calc_axes(structure, base.node), base.held, false);
-    Index size = free.cols();
+    Index size = 0;
+    for (const auto& link : assembly.links)
+      if (link.parent < 0 && !link.closes_loop) size += count_free(link);
     for (const auto* body : bodies) {
       first_.push_back(size);
       size += body->num_modes();
     }
     T_.resize(bodies.size());
-    MatrixXd node_motion = MatrixXd::Zero(6, size);
-    node_motion.leftCols(free.cols()) = free;
-    add_body(0, base.node, node_motion);
-    for (const auto& link : assembly.links)
-      if (link.parent >= 0 && !link.closes_loop) add_body(link.child, link.node, calc_motion(link.parent, link.node));
+    Index next = 0;
+    for (const auto& link : assembly.links) {
+      if (link.closes_loop) continue;
+      if (link.parent >= 0) {
+        add_body(link.child, link.node, calc_motion(link.parent, link.node));
+        continue;
+      }
+      MatrixXd node_motion = MatrixXd::Zero(6, size);
+      node_motion.middleCols(next, count_free(link)) = choose_axes(calc_axes(structure, link.node), link.held, false);
+      next += count_free(link);
+      add_body(link.child, link.node, node_motion);
+    }
     for (const auto& link : assembly.links)
       if (link.closes_loop) add_constraint(link);
   }
 
   Index size() const { return T_.front().cols(); }
   const MatrixXd& constraints() const { return constraints_; }
+  /// [6 + n x size]: velocity of Bo, angular velocity and η̇ of a part per unit of the coordinates' rates.
+  const MatrixXd& get_motion(int part) const { return T_[static_cast<std::size_t>(part)]; }
 
   MatrixXd calc_mass() const {
     MatrixXd M = MatrixXd::Zero(size(), size());
@@ -161,30 +174,79 @@ MatrixXd calc_null_space(MatrixXd rows, Index size) {
   return Q.rightCols(size - qr.rank());
 }
 
-}  // namespace
+/// Pencil of the assembly without its constraints, and W = S N V Λ^{-1/2}: WᵀAW = 1 of A = K + shift M in the subspace
+/// that the constraints leave, without directions that have neither stiffness nor mass.
+struct Whitened {
+  MatrixXd W;  ///< size x r
+  MatrixXd M;  ///< WᵀMW
+};
 
-Eigen::VectorXd calc_assembled_eigenvalues(const std::vector<const FlexBody*>& bodies, const Structure& structure,
-                                           const Assembly& assembly, double shift) {
-  const Coordinates coordinates(bodies, structure, assembly);
+Whitened whiten(const Coordinates& coordinates, double shift) {
   MatrixXd M = coordinates.calc_mass(), A = coordinates.calc_stiffness() + shift * M;
   const double empty = kMassless * A.diagonal().maxCoeff();
   const VectorXd scale = A.diagonal().unaryExpr([&](double a) { return a > empty ? 1 / std::sqrt(a) : 1.0; });
   M = scale.asDiagonal() * M * scale.asDiagonal();
   A = scale.asDiagonal() * A * scale.asDiagonal();
   const MatrixXd N = calc_null_space(coordinates.constraints() * scale.asDiagonal(), coordinates.size());
-  const MatrixXd M_N = N.transpose() * M * N, A_N = N.transpose() * A * N;
-  const auto [values, vectors] = [&] {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(A_N);
-    return std::pair<VectorXd, MatrixXd>(solver.eigenvalues(), solver.eigenvectors());
-  }();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(N.transpose() * A * N));
   // Directions without stiffness and mass: the twist of a free line of bars.
+  const VectorXd& values = solver.eigenvalues();
   const double smallest = kMassless * values.maxCoeff();
-  const Index num_empty = (values.array() <= smallest).count(), size = values.size() - num_empty;
-  const MatrixXd W = vectors.rightCols(size) * values.tail(size).cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(W.transpose() * M_N * W), Eigen::EigenvaluesOnly);
+  const Index size = values.size() - (values.array() <= smallest).count();
+  const MatrixXd W =
+      N * (solver.eigenvectors().rightCols(size) * values.tail(size).cwiseSqrt().cwiseInverse().asDiagonal());
+  return {scale.asDiagonal() * W, W.transpose() * M * W};
+}
+
+/// Motion of a node [6 x 6 + n] per unit of the motion of its body.
+MatrixXd calc_node_rows(const FlexBody& body, int index) {
+  MatrixXd G(6, 6 + body.num_modes());
+  G.leftCols<6>() = calc_rigid_motion(body.node_xyz.row(index).transpose());
+  G.rightCols(body.num_modes()) = body.phi[static_cast<std::size_t>(index)];
+  return G;
+}
+
+}  // namespace
+
+Eigen::VectorXd calc_assembled_eigenvalues(const std::vector<const FlexBody*>& bodies, const Structure& structure,
+                                           const Assembly& assembly, double shift) {
+  const auto whitened = whiten(Coordinates(bodies, structure, assembly), shift);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(whitened.M, Eigen::EigenvaluesOnly);
   Eigen::VectorXd lambda = solver.eigenvalues().reverse();
   for (double& value : lambda) value = value > 0 ? 1 / value - shift : INFINITY;
   return lambda;
+}
+
+MatrixXd calc_assembled_deflections(const std::vector<const FlexBody*>& bodies, const Structure& structure,
+                                    const Assembly& assembly, double shift, const fe::Model& model,
+                                    const Partition& partition, const MatrixXd& F) {
+  const Coordinates coordinates(bodies, structure, assembly);
+  const auto visit = [&](const auto& work) {  // grids with their bodies
+    for (const auto& node : model.nodes()) {
+      const int part = partition.find_owner(node.id);
+      const auto& body = *bodies[static_cast<std::size_t>(part)];
+      if (const int index = body.find_node(node.id); node.num_dofs == 6 && index >= 0)
+        work(node.first_gdof, part, calc_node_rows(body, index));
+    }
+  };
+  std::vector<MatrixXd> loads;
+  for (const auto* body : bodies) loads.push_back(MatrixXd::Zero(6 + body->num_modes(), F.cols()));
+  visit([&](int first, int part, const MatrixXd& G) {
+    loads[static_cast<std::size_t>(part)] += G.transpose() * F.middleRows<6>(first);
+  });
+  MatrixXd f = MatrixXd::Zero(coordinates.size(), F.cols());
+  for (int part = 0; part < static_cast<int>(bodies.size()); ++part)
+    f += coordinates.get_motion(part).transpose() * loads[static_cast<std::size_t>(part)];
+  const MatrixXd W = whiten(coordinates, kStaticShift * shift).W;
+  const MatrixXd y = W * (W.transpose() * f);
+  std::vector<MatrixXd> motions;
+  for (int part = 0; part < static_cast<int>(bodies.size()); ++part)
+    motions.push_back(coordinates.get_motion(part) * y);
+  MatrixXd u = MatrixXd::Zero(model.num_gdofs(), F.cols());
+  visit([&](int first, int part, const MatrixXd& G) {
+    u.middleRows<6>(first) = G * motions[static_cast<std::size_t>(part)];
+  });
+  return u;
 }
 
 }  // namespace bough::analysis::splitting

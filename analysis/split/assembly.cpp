@@ -152,6 +152,17 @@ std::map<int, std::string> name_dependent(const Structure& structure) {
   return names;
 }
 
+/// A constraint at each grid of the joint: from the first part that has it to each other one.
+void add_grid_links(const Partition& partition, const Joint& joint, const std::vector<int>& number,
+                    std::vector<PartLink>& links) {
+  for (const int grid : joint.grids) {
+    std::set<int> parts;
+    for (const int part : partition.grid_parts.at(grid)) parts.insert(number[static_cast<std::size_t>(part)]);
+    for (const int part : parts)
+      if (part != *parts.begin()) links.push_back({*parts.begin(), part, grid, kAll, true, true});
+  }
+}
+
 void add_ground_links(const Structure& structure, const Partition& partition, Assembly& assembly) {
   std::map<int, std::vector<int>> grids_of;
   for (const auto& [grid, mask] : structure.held) {
@@ -210,18 +221,19 @@ std::vector<Joint> find_joints(const Structure& structure, const Partition& part
   int next = find_max_grid(structure) + 1;
   for (auto& joint : joints) {
     check_strength(structure, partition, joint, diagnostics);
-    joint.is_new = joint.grids.size() > 1;
-    joint.node = joint.is_new ? next++ : joint.grids.front();
+    joint.is_by_grids = joint.grids.size() > 1 && interface == "grids";
+    joint.is_new = joint.grids.size() > 1 && !joint.is_by_grids;
+    joint.node = joint.is_by_grids ? 0 : joint.is_new ? next++ : joint.grids.front();
     for (const int grid : joint.grids) joint.x += structure.position.at(grid);
     joint.x /= static_cast<double>(joint.grids.size());
     joint.is_average = joint.is_new && interface == "average";
-    if (joint.is_average && structure.common_held != 0)
+    if ((joint.is_average || joint.is_by_grids) && structure.common_held != 0)
       throw InputError("split.bad-choice", structure.locate({}),
-                       "--interface average needs a deck whose grids do not all hold a component",
+                       "--interface " + interface + " needs a deck whose grids do not all hold a component",
                        "use --interface rigid");
-    if (!joint.is_new || joint.is_average) continue;
+    if (joint.grids.size() == 1 || joint.is_average) continue;
     check_independent(structure, joint, dependent, diagnostics);
-    check_extent(structure, partition, joint, diagnostics);
+    if (joint.is_new) check_extent(structure, partition, joint, diagnostics);
   }
   diagnostics.throw_if_errors();
   return joints;
@@ -259,10 +271,15 @@ Assembly make_assembly(const Structure& structure, std::vector<Joint> joints, bo
           its_number = next++;
           open.push_back(child);
         }
+        if (joints[j].is_by_grids) {
+          if (is_first) tree.push_back({-1, its_number, 0, 0, false, false, joints[j].x});
+          continue;
+        }
         const unsigned held = is_first ? kAll : kAll & ~structure.common_held;
         (is_first ? tree : loops)
             .push_back({number[static_cast<std::size_t>(parent)], its_number, joints[j].node, held, !is_first});
       }
+      if (joints[j].is_by_grids) add_grid_links(partition, joints[j], number, loops);
     }
   }
   for (std::size_t i = 0; i < structure.elements.size(); ++i) {
@@ -281,7 +298,12 @@ Assembly make_assembly(const Structure& structure, std::vector<Joint> joints, bo
   assembly.joints = std::move(joints);
 
   PartLink base{-1, 0, 0, kAll, false};
-  if (!is_held) {
+  const auto by_grids = std::find_if(assembly.joints.begin(), assembly.joints.end(),
+                                     [](const Joint& joint) { return joint.is_by_grids && joint.parts.count(0) > 0; });
+  if (!is_held && by_grids != assembly.joints.end()) {
+    base.held = 0;
+    base.point = by_grids->x;
+  } else if (!is_held) {
     // At the grid with the most held components; a free structure is carried at its first cut.
     base.held = 0;
     for (const auto& [grid, mask] : structure.held)

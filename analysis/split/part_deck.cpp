@@ -94,6 +94,7 @@ void keep_sets(records::Deck& deck) {
     if (sets.count(subcase.load) == 0) subcase.load = 0;
     if (temperatures.count(subcase.temperature) == 0) subcase.temperature = 0;
     if (temperatures.count(subcase.initial_temperature) == 0) subcase.initial_temperature = 0;
+    if (temperatures.count(subcase.material_temperature) == 0) subcase.material_temperature = 0;
     subcase.suport1 = 0;
   }
 }

@@ -12,6 +12,8 @@ using Eigen::Vector3d;
 using records::BodyBasis;
 
 constexpr unsigned kFixed = 0b111111;
+constexpr unsigned kTranslations = 0b000111;
+constexpr unsigned kRotations = 0b111000;
 
 // TOML: a basic string.
 std::string quote_text(const std::string& text) {
@@ -22,6 +24,12 @@ std::string quote_text(const std::string& text) {
 
 std::string format_vector(const Vector3d& v) {
   return fmt::format("[{}, {}, {}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
+}
+
+/// To nine digits of the largest coordinate: a point without round-off, which both ends of a hinge have.
+Vector3d round_point(const Vector3d& x) {
+  const double unit = std::pow(10, std::floor(std::log10(x.cwiseAbs().maxCoeff())) - 8);
+  return x.unaryExpr([&](double a) { return std::stod(fmt::format("{:.9g}", std::round(a / unit) * unit)); });
 }
 
 /// Angles a, b, c with R = Rx(a) Ry(b) Rz(c).
@@ -43,6 +51,7 @@ double round_digit(double x) { return std::stod(fmt::format("{:.1g}", x)); }
 std::string write_type(unsigned held) {
   if (held == kFixed) return "type = \"fixed\"\n";
   if (held == 0) return "type = \"free\"\n";
+  if (held == kTranslations) return "type = \"spherical\"\n";
   std::string text = "type = \"general\"\n";
   if (const auto axes = list_free(held, 3); !axes.empty()) text += "rotations = \"" + axes + "\"\n";
   if (const auto axes = list_free(held, 0); !axes.empty()) text += "translations = \"" + axes + "\"\n";
@@ -59,6 +68,8 @@ std::string write_axes(const Structure& structure, const PartLink& link) {
 
 /// Place of a link with the ground: position in basic and, if components are free, the CD axes.
 std::string write_ground_end(const Structure& structure, const Assembly& assembly, const PartLink& link) {
+  if (link.node == 0 && !link.point.isZero(0))
+    return fmt::format("parent_position = {0}\nchild_position = {0}\n", format_vector(round_point(link.point)));
   if (link.node == 0) return {};
   Vector3d x = Vector3d::Zero();
   if (const auto grid = structure.position.find(link.node); grid != structure.position.end()) x = grid->second;
@@ -73,6 +84,7 @@ std::string write_link(const PartNames& names, const Structure& structure, const
   std::string text = link.closes_loop ? "[[constraint]]\n" : "[[hinge]]\n";
   if (link.parent < 0) {
     text += link.closes_loop ? fmt::format("name = \"ground-{}\"  # the deck holds grid {}\n", link.node, link.node)
+            : link.child > 0 ? fmt::format("name = \"free-{}\"\n", link.child + 1)
                              : std::string("name = \"base\"\n");
     return text + write_type(link.held) + "parent = \"ground\"\nchild = " + quote_text(names.get_part(link.child)) +
            "\n" + write_ground_end(structure, assembly, link) + "\n";
@@ -101,7 +113,14 @@ records::BodySpec make_part_spec(const PartNames& names, const Structure& struct
     spec.interface_nodes.push_back(spec.frame_nodes.front());
   }
   spec.basis = spec.interface_nodes.empty() ? BodyBasis::Normal : BodyBasis::CraigBampton;
-  const bool is_carried = assembly.is_held || assembly.clamp[static_cast<std::size_t>(part)] != 0;
+  const bool is_carried = (assembly.is_held && part == 0) || assembly.clamp[static_cast<std::size_t>(part)] != 0;
+  bool has_moments = false, is_by_grids = false;
+  for (const auto& link : assembly.links) {
+    if (link.parent != part && link.child != part) continue;
+    is_by_grids = is_by_grids || link.is_by_grids;
+    has_moments = has_moments || (link.node != 0 && (link.held & kRotations) != 0);
+  }
+  spec.interface_moments = has_moments || !is_by_grids;
   if (spec.frame_nodes.empty()) spec.frame = is_carried ? records::BodyFrame::Fixed : records::BodyFrame::Free;
   spec.max_frequency_hz = max_hz;
   return spec;
@@ -116,7 +135,7 @@ std::string write_part_file(const PartNames& names, const Assembly& assembly, in
     text += fmt::format("frame = \"node\"           # its hinge carries this average of grids\nframe_nodes = [{}]\n",
                         clamp);
   else if (spec.frame == records::BodyFrame::Free)
-    text += "frame = \"free\"\n";
+    text += "frame = \"free\"           # mean axes of its free motion\n";
   else if (clamp == 0)
     text += "frame = \"fixed\"          # the deck's constraints hold the body frame\n";
   else
@@ -126,6 +145,7 @@ std::string write_part_file(const PartNames& names, const Assembly& assembly, in
   else
     text += fmt::format("interface = [{}]  # cuts; add each grid that a force or moment loads\n",
                         fmt::join(spec.interface_nodes, ", "));
+  if (!spec.interface_moments) text += "interface_moments = false  # its joints pass forces alone\n";
   text += "\n[body.modes]\n";
   if (spec.basis == BodyBasis::CraigBampton) text += "basis = \"craig-bampton\"\n";
   text += fmt::format("max_frequency = {}  # of its modes with the cuts held\n\n", *spec.max_frequency_hz);
@@ -139,7 +159,8 @@ std::string write_part_file(const PartNames& names, const Assembly& assembly, in
 }
 
 std::string write_system_file(const PartNames& names, const Structure& structure, const Assembly& assembly,
-                              double lowest_hz, double highest_hz) {
+                              const Eigen::VectorXd& whole_hz) {
+  const double lowest_hz = whole_hz(0);
   std::string text = fmt::format("# bough run {0}-run.toml -o {0}-run.h5\n# The parts of {1}, cut by bough split.\n\n",
                                  names.base, names.deck);
   for (int part = 0; part < static_cast<int>(assembly.clamp.size()); ++part)
@@ -150,14 +171,15 @@ std::string write_system_file(const PartNames& names, const Structure& structure
     text += write_link(names, structure, assembly, link, number);
     if (link.parent >= 0) ++number;
   }
-  const double step = round_digit(std::min(1 / (400 * lowest_hz), 1 / (100 * highest_hz)));
+  const double step = round_digit(1 / (500 * lowest_hz));
   return text + fmt::format(
                     "[simulation]\nduration = {}\noutput_step = {}\nintegrator = \"implicit\"  # fixed steps: the "
-                    "fastest modes "
-                    "of the parts need not be followed\nstep = {}\ngravity = [0.0, 0.0, -9.81]  # a load to begin "
-                    "with, in the "
-                    "units of the deck (-9810.0 of mm, 0.0 in space)\n",
-                    round_digit(3 / lowest_hz), 2 * step, step);
+                    "fastest modes of the parts need not be followed\nstep = {}  # {:.2g} in the period of the first "
+                    "mode, {:.2g} in that of mode {}: smaller for loads that excite such modes\n"
+                    "gravity = [0.0, 0.0, -9.81]  # a load to begin with, in the units of the deck (-9810.0 of mm, "
+                    "0.0 in space)\n",
+                    round_digit(3 / lowest_hz), 2 * step, step, 1 / (step * whole_hz(0)),
+                    1 / (step * whole_hz(whole_hz.size() - 1)), whole_hz.size());
 }
 
 }  // namespace bough::analysis::splitting

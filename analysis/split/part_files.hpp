@@ -25,9 +25,8 @@ records::BodySpec make_part_spec(const PartNames& names, const Structure& struct
 std::string write_part_file(const PartNames& names, const Assembly& assembly, int part, const records::BodySpec& spec);
 
 /// The system of the parts under gravity along -z. Its integrator does not follow the fastest modes of the parts.
-/// \param lowest_hz   [1/T] first elastic frequency of the deck: at least 400 steps in its period
-/// \param highest_hz  [1/T] highest frequency compared: at least 100 steps in its period
+/// \param whole_hz  [1/T] elastic frequencies of the deck that are compared: 500 steps in the period of the first
 std::string write_system_file(const PartNames& names, const Structure& structure, const Assembly& assembly,
-                              double lowest_hz, double highest_hz);
+                              const Eigen::VectorXd& whole_hz);
 
 }  // namespace bough::analysis::splitting

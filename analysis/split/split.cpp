@@ -15,6 +15,8 @@
 #include "analysis/split/assembled_modes.hpp"
 #include "analysis/split/part_deck.hpp"
 #include "analysis/split/part_files.hpp"
+#include "analysis/split/static_check.hpp"
+#include "base/rotation.hpp"
 #include "fe/linear/petsc.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/connected_parts.hpp"
@@ -34,14 +36,16 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// Highest frequency of the modes of a part, with the cuts held, over that of the highest mode compared.
 constexpr double kFirstRange = 3;
+constexpr unsigned kRotations = 0b111000;
 constexpr int kMaxRounds = 5;           ///< each doubles the range
 constexpr int kMaxRigidRounds = 3;      ///< with cuts along several grids
 constexpr double kTwistInertia = 1e-5;  ///< relative to the torsional inertia that a line of bars carries
 constexpr double kRotaryInertia =
-    1e-7;                             ///< relative to the inertia that a grid of lumped mass carries, about each axis
-constexpr double kDiscInertia = 0.6;  ///< of a disc about its diameter over that about its axis
-constexpr double kGrounding = 1e-6;   ///< force of a spring in rigid-body motion, over |K| |motion|
-constexpr double kParallel = 1e-9;    ///< sine of the angle, and relative inertia that is round-off
+    1e-7;                              ///< relative to the inertia that a grid of lumped mass carries, about each axis
+constexpr double kGridInertia = 3e-5;  ///< of the grids of a cut, relative to the least inertia of all parts about one
+constexpr double kDiscInertia = 0.6;   ///< of a disc about its diameter over that about its axis
+constexpr double kGrounding = 1e-6;    ///< force of a spring in rigid-body motion, over |K| |motion|
+constexpr double kParallel = 1e-9;     ///< sine of the angle, and relative inertia that is round-off
 
 double calc_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 
@@ -49,6 +53,7 @@ double calc_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * s
 struct WholeModes {
   Eigen::VectorXd hz;
   int num_rigid = 0;
+  Eigen::MatrixXd rigid;  ///< num_gdofs x num_rigid
 };
 
 WholeModes calc_whole_modes(const fe::Model& model, int number, Diagnostics& diagnostics) {
@@ -57,6 +62,7 @@ WholeModes calc_whole_modes(const fe::Model& model, int number, Diagnostics& dia
   const auto pairs = modal::calc_normal_modes(model, options, diagnostics);
   WholeModes modes;
   modes.num_rigid = pairs.num_rigid;
+  modes.rigid = pairs.Phi.leftCols(pairs.num_rigid);
   const Eigen::Index kept = std::min<Eigen::Index>(number, pairs.lambda.size() - pairs.num_rigid);
   modes.hz.resize(std::max<Eigen::Index>(kept, 0));
   for (Eigen::Index i = 0; i < modes.hz.size(); ++i) modes.hz(i) = calc_hz(pairs.lambda(pairs.num_rigid + i));
@@ -89,7 +95,7 @@ bool is_held_by_deck(const Structure& structure, Partition partition, int part) 
 std::string describe_cuts(const Assembly& assembly, int part) {
   std::vector<int> nodes;
   for (const auto& joint : assembly.joints)
-    if (joint.parts.count(part) > 0) nodes.push_back(joint.node);
+    if (joint.parts.count(part) > 0) nodes.push_back(joint.is_by_grids ? joint.grids.front() : joint.node);
   return nodes.empty() ? "" : fmt::format(", cut at {}", fmt::join(nodes, ", "));
 }
 
@@ -97,7 +103,7 @@ std::string describe_cuts(const Assembly& assembly, int part) {
 std::map<int, Eigen::Matrix3d> list_rotary_inertia(const Assembly& assembly, int part, const fe::Model& model) {
   std::map<int, Eigen::Matrix3d> rotary;
   for (const auto& joint : assembly.joints) {
-    if (joint.is_new || joint.parts.count(part) == 0) continue;
+    if (joint.is_new || joint.is_by_grids || joint.parts.count(part) == 0) continue;
     const fe::Node& node = model.node(model.find_node(joint.node));
     Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(model.num_gdofs(), 3);
     unit.middleRows<3>(node.first_gdof + 3).setIdentity();
@@ -126,6 +132,7 @@ struct Part {
   records::Deck deck;
   double mass = 0;
   std::map<int, Eigen::Matrix3d> rotary;  ///< mass matrix of the rotations of each grid at a cut, basic
+  std::map<int, unsigned> unstiffened;    ///< components of grids that AUTOSPC holds, in the CD axes
   Matrix6d moving =
       Matrix6d::Zero();  ///< mass matrix of rigid-body motion about the origin of basic, held grids at rest
   int num_elements = 0;
@@ -171,7 +178,8 @@ double calc_inertia_about(const Matrix6d& mass, const Eigen::Vector3d& p, const 
 /// except the one that carries the part, gets a CONM2 with kTwistInertia of the inertia about the line: of what the cut
 /// carries, or of all parts if it closes a loop. At the ground it does not move. A grid with inertia about the line
 /// needs none. Grids without rotary inertia (lumped mass) get kRotaryInertia about all axes: where modes with the cuts
-/// held span all masses, rotations of a cut would have none, and a joint there would pass no moment.
+/// held span all masses, rotations of a cut would have none, and a joint there would pass no moment. For the same
+/// reason the grids of a cut that is joined by these get kGridInertia together, half of it in each part.
 void add_rotary_inertia(const Structure& structure, const Partition& partition, const Assembly& assembly, double wtmass,
                         std::vector<Part>& parts) {
   Matrix6d whole = Matrix6d::Zero();
@@ -211,8 +219,29 @@ void add_rotary_inertia(const Structure& structure, const Partition& partition, 
     mass.inertia = {I(0, 0), -I(0, 1), I(1, 1), -I(0, 2), -I(1, 2), I(2, 2)};
     parts[static_cast<std::size_t>(part)].deck.conm2.push_back(mass);
   };
+  std::map<std::pair<int, int>, int> num_links;  // by grids, of the parts of a link
+  for (const auto& link : assembly.links)
+    if (link.is_by_grids) ++num_links[{link.parent, link.child}];
+  const auto add_to_grid = [&](const PartLink& link) {
+    Eigen::Matrix<double, 6, 3> turns;
+    turns << skew(structure.position.at(link.node)), Eigen::Matrix3d::Identity();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> about_grid(Eigen::Matrix3d(turns.transpose() * whole * turns),
+                                                                    Eigen::EigenvaluesOnly);
+    const double J =
+        kGridInertia * about_grid.eigenvalues().x() / (2 * num_links.at({link.parent, link.child}) * wtmass);
+    for (const int part : {link.parent, link.child}) {
+      if ((link.held & kRotations) == 0) continue;
+      records::Conm2 mass;
+      mass.id = ++next_id;
+      mass.g = link.node;
+      mass.inertia = {J, 0, J, 0, 0, J};
+      parts[static_cast<std::size_t>(part)].deck.conm2.push_back(mass);
+    }
+  };
   for (auto link = assembly.links.rbegin(); link != assembly.links.rend(); ++link) {
-    if (link->closes_loop) {
+    if (link->is_by_grids) {
+      add_to_grid(*link);
+    } else if (link->closes_loop) {
       add(link->parent, link->node, whole);
       if (assembly.clamp[static_cast<std::size_t>(link->child)] != link->node) add(link->child, link->node, whole);
     } else if (link->parent >= 0) {
@@ -242,6 +271,9 @@ std::vector<Part> make_parts(const PartNames& names, const Structure& structure,
       part.mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).mass;
       part.moving = calc_moving_mass(structure, model);
       part.rotary = list_rotary_inertia(assembly, i, model);
+      for (const auto& entry : model.autospc())
+        if (entry.component > 0 && entry.terms.empty())
+          part.unstiffened[entry.node] |= 1U << static_cast<unsigned>(entry.component - 1);
     });
     if (!(part.mass > 0))
       diagnostics.error("split.no-mass", first, fmt::format("part {} has no mass", i + 1),
@@ -250,6 +282,40 @@ std::vector<Part> make_parts(const PartNames& names, const Structure& structure,
   }
   diagnostics.throw_if_errors();
   return parts;
+}
+
+/// Constraints at grids join no component that one of the parts has no stiffness for: the rotations of solids, and of
+/// flat shells about their normal without PARAM,K6ROT.
+void release_unstiffened(const std::vector<Part>& parts, const Structure& structure, Assembly& assembly,
+                         Diagnostics& diagnostics) {
+  std::vector<std::string> names;
+  for (auto& link : assembly.links) {
+    if (!link.is_by_grids) continue;
+    const unsigned before = link.held;
+    for (const int part : {link.parent, link.child}) {
+      const auto& unstiffened = parts[static_cast<std::size_t>(part)].unstiffened;
+      if (const auto found = unstiffened.find(link.node); found != unstiffened.end()) link.held &= ~found->second;
+    }
+    std::string components;
+    for (unsigned c = 0; c < 6; ++c)
+      if ((((before & ~link.held) >> c) & 1U) != 0) components += std::to_string(c + 1);
+    if (!components.empty()) names.push_back(fmt::format("{} of grid {}", components, link.node));
+  }
+  std::erase_if(assembly.links, [](const auto& link) { return link.is_by_grids && link.held == 0; });
+  if (names.empty()) return;
+  constexpr std::size_t kMaxNames = 4;
+  const std::string more = names.size() > kMaxNames ? fmt::format(", and so on at {} grids", names.size()) : "";
+  names.resize(std::min(names.size(), kMaxNames));
+  diagnostics.note(
+      "split.released", structure.locate({}),
+      fmt::format("constraints at grids leave components without stiffness free: {}{}", fmt::join(names, ", "), more),
+      "nothing to do");
+}
+
+std::vector<const records::FlexBody*> list_pointers(const std::vector<records::FlexBody>& bodies) {
+  std::vector<const records::FlexBody*> pointers;
+  for (const auto& body : bodies) pointers.push_back(&body);
+  return pointers;
 }
 
 /// The parts reduced with modes to `max_hz`, and what their assembly has of the modes of the whole.
@@ -271,14 +337,18 @@ Reduction reduce_parts(const std::vector<Part>& parts, const PartNames& names, c
   for (std::size_t i = 0; i < parts.size(); ++i) {
     events.show_progress(fmt::format("split: reduction of part {} of {}", i + 1, parts.size()));
     const auto spec = make_part_spec(names, structure, assembly, static_cast<int>(i), max_hz);
+    Diagnostics of_part;
     name_part(names, assembly, static_cast<int>(i), [&] {
-      reduction.bodies.push_back(stiffening::reduce(parts[i].deck, spec, {}, reduction.diagnostics).body);
-      reduction.diagnostics.throw_if_errors();
+      reduction.bodies.push_back(stiffening::reduce(parts[i].deck, spec, {}, of_part).body);
+      of_part.throw_if_errors();
     });
+    for (auto item : of_part.items()) {
+      item.what = "part " + spec.name + ": " + item.what;
+      reduction.diagnostics.add_new(item);
+    }
   }
   events.show_progress("split: modes of the assembled parts");
-  std::vector<const records::FlexBody*> bodies;
-  for (const auto& body : reduction.bodies) bodies.push_back(&body);
+  const auto bodies = list_pointers(reduction.bodies);
   const double omega = 2 * std::numbers::pi * whole.hz(0);
   const auto lambda = calc_assembled_eigenvalues(bodies, structure, assembly, omega * omega);
   for (Eigen::Index i = 0; i < whole.hz.size(); ++i) {
@@ -304,10 +374,13 @@ Reduction reduce_to_accuracy(const std::vector<Part>& parts, const PartNames& na
   }
 }
 
-/// Returns true for warnings of directions of a cut that move no mass, if the assembly is accurate without these.
-bool is_expected(const Diagnostic& item, const Reduction& reduction) {
+/// Returns true for warnings of directions of a cut that move no mass, if the assembly is accurate without these, and
+/// of rotations without stiffness, which constraints at grids leave free.
+bool is_expected(const Diagnostic& item, const Assembly& assembly, const Reduction& reduction) {
   const bool is_massless = item.id == "modal.massless-interface" || item.id == "modal.massless-constraint";
-  return is_massless && reduction.calc_error() <= kMaxSplitError;
+  if (is_massless) return reduction.calc_error() <= kMaxSplitError;
+  return item.id == "reduce.partial-rotation" && std::any_of(assembly.joints.begin(), assembly.joints.end(),
+                                                             [](const auto& joint) { return joint.is_by_grids; });
 }
 
 /// Returns "CELAS2 801 between grids 14 and 19" of the first spring that strains in rigid-body motion; empty: none.
@@ -347,9 +420,24 @@ void warn_of_error(const Reduction& reduction, const Structure& structure, const
       !spring.empty()
           ? "give the spring grids at one place with equal displacement axes, or replace it by a CBUSH or CROD"
       : has_wide
-          ? fmt::format("cut where the section is stiff, or try --interface {}", is_average ? "rigid" : "average")
+          ? fmt::format("cut where the section is stiff, or try --interface grids or {}",
+                        is_average ? "rigid" : "average")
           : "raise max_frequency of the body files, refine the mesh, or give the grids of the cuts inertia about "
             "all axes by small CONM2 cards, or by PARAM,COUPMASS,1 in a deck without it");
+}
+
+/// Without a warning of the frequencies, whose cause is the same.
+void warn_of_deflections(const std::vector<ComparedDeflection>& deflections, const Structure& structure,
+                         double frequency_error, Diagnostics& diagnostics) {
+  const auto worst = std::max_element(deflections.begin(), deflections.end(),
+                                      [](const auto& a, const auto& b) { return a.error < b.error; });
+  if (worst == deflections.end() || !(worst->error > kMaxSplitError) || frequency_error > kMaxSplitError) return;
+  diagnostics.warning(
+      "split.deflection", structure.locate({}),
+      fmt::format("the static deflection of the assembled parts differs by {:.2g} from that of the deck "
+                  "under {}, allowed {:.0e}",
+                  worst->error, worst->load, kMaxSplitError),
+      "name the grids that are loaded in interface of the body files, or raise max_frequency");
 }
 
 void warn_of_damping(const Structure& structure, const WholeModes& whole, Diagnostics& diagnostics) {
@@ -379,7 +467,7 @@ void note_pieces(const Partition& partition, const Structure& structure, Diagnos
 
 SplitAnswer split_deck(const SplitRequest& request, Events& events) {
   demand_word("--along", request.choice.along, {"path", "long", "x", "y", "z"});
-  demand_word("--interface", request.choice.interface, {"rigid", "average"});
+  demand_word("--interface", request.choice.interface, {"rigid", "average", "grids"});
   demand_number(request.choice.num_parts >= 0, "--parts", request.choice.num_parts, "a number above 0");
   demand_number(request.num_compared > 0, "--modes", request.num_compared, "a number above 0");
   do_once([&] { demand_deck(request.deck); });
@@ -399,13 +487,14 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
     assign_attached(structure, partition);
     const int root = find_most_held(structure, partition);
     const bool is_held = is_held_by_deck(structure, partition, root);
-    const auto assembly =
+    auto assembly =
         make_assembly(structure, find_joints(structure, partition, request.choice.interface), is_held, root, partition);
     note_pieces(partition, structure, diagnostics);
 
     PartNames names{request.name, request.deck_path.empty() ? request.deck : request.deck_path};
     if (names.base.empty()) names.base = std::filesystem::path(request.deck).stem().string();
     auto parts = make_parts(names, structure, partition, assembly, diagnostics);
+    release_unstiffened(parts, structure, assembly, diagnostics);
     add_rotary_inertia(structure, partition, assembly, model.wtmass(), parts);
     events.show_progress("split: modes of the deck");
     const auto whole = calc_whole_modes(model, std::max(request.num_compared, 1), diagnostics);
@@ -419,9 +508,17 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
     Reduction reduction;
     if (request.is_checked) reduction = reduce_to_accuracy(parts, names, structure, assembly, whole, max_hz, events);
     for (const auto& item : reduction.diagnostics.items())
-      if (!is_expected(item, reduction)) diagnostics.add_new(item);
+      if (!is_expected(item, assembly, reduction)) diagnostics.add_new(item);
     answer.frequencies = reduction.frequencies;
     warn_of_error(reduction, structure, assembly, model, diagnostics);
+    if (request.is_checked) {
+      events.show_progress("split: static deflections");
+      const double omega = 2 * std::numbers::pi * whole.hz(0);
+      answer.deflections = compare_deflections(model, structure, partition, assembly, list_pointers(reduction.bodies),
+                                               whole.rigid, omega * omega, diagnostics);
+      events.show_progress("");
+      warn_of_deflections(answer.deflections, structure, reduction.calc_error(), diagnostics);
+    }
     warn_of_damping(structure, whole, diagnostics);
 
     parts.front().deck.unused = deck.unused;  // reported once by the writer
@@ -437,6 +534,11 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
       for (const auto& link : assembly.links)
         if (link.child == i && !link.closes_loop)
           part.parent = link.parent < 0 ? "ground" : names.get_part(link.parent);
+      for (const auto& link : assembly.links)
+        if (link.child == i && link.is_by_grids) {
+          part.parent = names.get_part(link.parent);
+          ++part.num_joined;
+        }
       part.node = assembly.clamp[index];
       part.num_elements = parts[index].num_elements;
       part.num_grids = static_cast<int>(parts[index].deck.grids.size());
@@ -444,8 +546,7 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
       if (request.is_checked) part.body = std::move(reduction.bodies[index]);
       answer.parts.push_back(std::move(part));
     }
-    answer.files.push_back({names.base + "-run.toml",
-                            write_system_file(names, structure, assembly, whole.hz(0), whole.hz(whole.hz.size() - 1))});
+    answer.files.push_back({names.base + "-run.toml", write_system_file(names, structure, assembly, whole.hz)});
     diagnostics.throw_if_errors();
   });
   add_messages(diagnostics, events);

@@ -17,7 +17,8 @@ struct SplitChoice {
   std::vector<std::string> planes;    ///< "x=2.5" or "nx,ny,nz=d", each: n·r = d in basic
   std::vector<std::string> elements;  ///< a part each: ids, ranges, property:P, card:NAME, separated by commas
   std::vector<int> grids;             ///< cut at these
-  /// Joint of cuts along several grids: "rigid" (RBE2 to a new grid) or "average" (RBE3).
+  /// Joint of cuts along several grids: "rigid" (RBE2 to a new grid), "average" (RBE3) or "grids" (a constraint at
+  /// each).
   std::string interface = "rigid";
 };
 
@@ -34,10 +35,18 @@ struct SplitRequest {
 struct SplitPart {
   std::string name;
   std::string parent;  ///< name, or "ground"
-  int node = 0;        ///< grid at which the parent carries the part; 0: constrained as in the deck
+  int node = 0;        ///< grid at which the parent carries the part; 0: constrained as in the deck, or by grids
+  int num_joined = 0;  ///< grids at which constraints join the part to others
   int num_elements = 0, num_grids = 0;
   double mass = 0;
   records::FlexBody body;  ///< reduced, with is_checked
+};
+
+/// Deflection under one static load, of the deck and of the assembled parts.
+struct ComparedDeflection {
+  std::string load;       ///< "weight along x", "force along x at grid 5", "LOAD 7"
+  double deflection = 0;  ///< [L] largest displacement of a grid of the deck
+  double error = 0;       ///< of the parts: largest difference, over the largest deflection of loads of its kind
 };
 
 struct ComparedFrequency {
@@ -49,23 +58,24 @@ struct ComparedFrequency {
 struct SplitAnswer {
   std::vector<StartFile> files;  ///< a deck and a body file for each part, then the system file
   std::vector<SplitPart> parts;
-  double mass = 0;                             ///< of the deck
-  std::vector<ComparedFrequency> frequencies;  ///< with is_checked
+  double mass = 0;                              ///< of the deck
+  std::vector<ComparedFrequency> frequencies;   ///< with is_checked
+  std::vector<ComparedDeflection> deflections;  ///< with is_checked
 };
 
-/// Largest relative error of an assembled frequency that is not warned of.
+/// Largest relative error of an assembled frequency or deflection that is not warned of.
 constexpr double kMaxSplitError = 1e-4;
 
 /// Reads a deck and cuts it.
 ///
 /// Every element, mass, load, constraint and rigid element goes to one part; cuts at one grid join two parts there,
-/// cuts along several grids by a new grid to which these are rigidly connected. Bodies have Craig-Bampton bases with
-/// their cuts as interface. The part that the deck holds is the first body, the others are joined by fixed hinges, or
-/// by constraints where they close a loop or where the deck holds them.
+/// cuts along several grids by a new grid to which these are rigidly connected, or grid by grid. Bodies have
+/// Craig-Bampton bases with their cuts as interface. The part that the deck holds is the first body, the others are
+/// joined by fixed hinges, or by constraints where they close a loop or where the deck holds them.
 ///
 /// \throws InputError "cli.bad-option", "cli.bad-range" of the choices; split.* with all errors of one step; what
-/// reading, fe and stiffening throw. \note Warns split.inaccurate if an assembled frequency is off by more than
-/// kMaxSplitError.
+/// reading, fe and stiffening throw. \note Warns split.inaccurate if an assembled frequency, else split.deflection if
+/// a static deflection is off by more than kMaxSplitError.
 SplitAnswer split_deck(const SplitRequest& request, Events& events);
 
 }  // namespace bough::analysis

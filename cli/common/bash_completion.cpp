@@ -33,6 +33,9 @@ _bough() {{
     COMPREPLY=($(compgen -W "$values" -- "$word"))
   elif [ -z "$verb" ] || [ "${{word:0:1}}" = "-" ]; then
     COMPREPLY=($(compgen -W "$options" -- "$word"))
+    if [ -z "$verb" ]; then
+      compopt -o nosort 2> /dev/null  # commands in the order of their groups, from bash 4.4 on
+    fi
   else
     COMPREPLY=()
   fi
@@ -72,7 +75,13 @@ std::string make_bash_completion(const CLI::App& app) {
       }
     }
   }
-  options = fmt::format("    \"\") options=\"{}{}\" ;;\n", names, list_options(app)) + options;
+  std::string groups;
+  for (const auto& [heading, members] : list_command_groups(app)) {
+    groups += "    # " + heading + ":";
+    for (const auto* verb : members) groups += " " + verb->get_name();
+    groups += '\n';
+  }
+  options = groups + fmt::format("    \"\") options=\"{}{}\" ;;\n", names, list_options(app)) + options;
   return fmt::format(kScript, fmt::arg("options", options), fmt::arg("values", values));
 }
 

@@ -12,10 +12,12 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <string_view>
 #include <tuple>
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/ranks.hpp"
+#include "base/input_bytes.hpp"
 #include "cli/common/interrupt.hpp"
 
 namespace bough::cli {
@@ -38,15 +40,28 @@ ComputationError fail_to_print() {
           "check where the output goes, and the space left there"};
 }
 
+/// False where the file has no such line.
+bool read_line(const SourceLocation& where, std::string& line) {
+  if (const auto kept = find_input(where.file)) {
+    std::string_view rest = *kept;
+    for (int k = 1; k < where.line && !rest.empty(); ++k)
+      rest.remove_prefix(std::min(rest.find('\n'), rest.size() - 1) + 1);
+    line = rest.substr(0, rest.find('\n'));
+    return !rest.empty();
+  }
+  std::ifstream in(where.file);
+  for (int k = 0; k < where.line; ++k)
+    if (!std::getline(in, line)) return false;
+  return true;
+}
+
 /// The line that a message is about, and a mark under its column where that is known; nothing where it cannot be read.
 std::string show_source_line(const SourceLocation& where) {
   constexpr std::size_t kLongest = 100;
   std::error_code ignored;
   if (where.line <= 0 || !std::filesystem::is_regular_file(where.file, ignored)) return "";
-  std::ifstream in(where.file);
   std::string line;
-  for (int k = 0; k < where.line; ++k)
-    if (!std::getline(in, line)) return "";
+  if (!read_line(where, line)) return "";
   // A negative column is that of a card, or of a text with tabs expanded: the message does not contain it.
   const bool is_told = where.column >= 0, has_tabs = line.find('\t') != std::string::npos;
   // Control characters of the terminal are replaced by blanks.

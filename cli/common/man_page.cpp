@@ -75,6 +75,15 @@ std::string format_synopsis(const CLI::App& verb) {
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::vector<const CLI::App*>>> list_command_groups(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::vector<const CLI::App*>>> groups;
+  for (const auto* verb : app.get_subcommands(nullptr)) {
+    if (groups.empty() || groups.back().first != verb->get_group()) groups.push_back({verb->get_group(), {}});
+    groups.back().second.push_back(verb);
+  }
+  return groups;
+}
+
 std::string make_man_page(const CLI::App& app) {
   std::string out = ".TH BOUGH 1 \"\" \"Bough " + std::string(get_version()) + "\" \"User Commands\"\n.SH NAME\n" +
                     "bough \\- from a finite\\-element model to a flexible multibody simulation\n.SH SYNOPSIS\n";
@@ -82,6 +91,10 @@ std::string make_man_page(const CLI::App& app) {
   for (const auto* verb : verbs) out += (verb == verbs.front() ? "" : ".br\n") + format_synopsis(*verb);
   out += ".SH DESCRIPTION\n" + format_footer(app.get_footer()) + ".SH OPTIONS\n" + format_options(app);
   out += ".SH COMMANDS\n";
+  for (const auto& [heading, members] : list_command_groups(app)) {
+    out += ".PP\n" + escape(heading) + ":\n";
+    for (const auto* verb : members) out += verb->get_name() + (verb == members.back() ? ".\n" : ",\n");
+  }
   for (const auto* verb : verbs) {
     out += ".SS bough " + verb->get_name() + "\n" + escape(verb->get_description()) + "\n" + format_options(*verb);
     out += format_footer(verb->get_footer());

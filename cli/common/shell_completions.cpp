@@ -82,8 +82,6 @@ constexpr auto kZsh = R"(#compdef bough
 _bough() {{
   local -a verbs
   local verb="" word
-  verbs=(
-{verbs}  )
   for word in "${{(@)words[2,CURRENT-1]}}"; do
     if [[ $word != -* ]]; then verb=$word; break; fi
   done
@@ -100,16 +98,22 @@ fi
 }  // namespace
 
 std::string make_zsh_completion(const CLI::App& app) {
-  std::string verbs;
+  // One list per group, which zsh shows below its heading.
+  std::string groups;
+  int number = 0;
+  for (const auto& [heading, members] : list_command_groups(app)) {
+    groups += "        verbs=(\n";
+    for (const auto* verb : members)
+      groups += fmt::format("          '{}:{}'\n", verb->get_name(), quote_zsh(shorten(verb->get_description())));
+    groups += fmt::format("        )\n        _describe -t commands-{} '{}' verbs\n", ++number, quote_zsh(heading));
+  }
   std::string options = fmt::format(
-      "    '')\n      if [[ $words[CURRENT] = -* ]]; then\n        _arguments {}\n      else\n"
-      "        _describe -t commands command verbs\n      fi ;;\n",
-      write_zsh_options(app));
+      "    '')\n      if [[ $words[CURRENT] = -* ]]; then\n        _arguments {}\n      else\n{}      fi ;;\n",
+      write_zsh_options(app), groups);
   for (const auto* verb : app.get_subcommands(nullptr)) {
-    verbs += fmt::format("    '{}:{}'\n", verb->get_name(), quote_zsh(shorten(verb->get_description())));
     options += fmt::format("    {}) _arguments {}'*:file:_files' ;;\n", verb->get_name(), write_zsh_options(*verb));
   }
-  return fmt::format(kZsh, fmt::arg("verbs", verbs), fmt::arg("options", options));
+  return fmt::format(kZsh, fmt::arg("options", options));
 }
 
 std::string make_fish_completion(const CLI::App& app) {
@@ -119,7 +123,7 @@ std::string make_fish_completion(const CLI::App& app) {
   out += write_fish_options(app, none);
   for (const auto* verb : app.get_subcommands(nullptr)) {
     out += "complete -c bough -f -n " + quote_fish(none) + " -a " + verb->get_name() + " -d " +
-           quote_fish(shorten(verb->get_description())) + "\n";
+           quote_fish(verb->get_group() + ": " + shorten(verb->get_description())) + "\n";
     out += write_fish_options(*verb, "__fish_seen_subcommand_from " + verb->get_name());
   }
   return out;

@@ -20,7 +20,7 @@ int run_info(const InfoOptions& o) {
   const Console console(o.quiet, o.verbosity);
   analysis::demand_body_file(o.file);
   if (!o.output.empty()) check_output(o, o.output, {analysis::get_body_path(o.file)});
-  const auto [info, events] = analysis::list_contents(o.file);
+  const auto [info, events, faults] = analysis::list_contents(o.file);
   if (o.json) {
     auto objects = nlohmann::json::array();
     for (const auto& object : info.objects) {
@@ -34,6 +34,7 @@ int run_info(const InfoOptions& o) {
     for (const auto& e : events) list.push_back({{"time", e.time}, {"what", e.what}, {"source", e.source}});
     nlohmann::json all{{"attributes", info.attributes}, {"objects", objects}};
     if (!list.empty()) all["events"] = list;
+    if (!faults.empty()) all["faults"] = faults;
     write_report(o, console, all.dump(2) + "\n");
     return kSuccess;
   }
@@ -57,6 +58,8 @@ int run_info(const InfoOptions& o) {
     text += line + "\n";
   }
   if (!events.empty()) text += "\n" + format_events(events);
+  if (!faults.empty()) text += "\nnot as the layout of the format:\n";
+  for (const auto& fault : faults) text += "  " + fault + "\n";
   write_report(o, console, text);
   return kSuccess;
 }

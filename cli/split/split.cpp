@@ -38,8 +38,10 @@ std::string format_split(const analysis::SplitAnswer& answer) {
   double mass = 0;
   for (const auto& part : answer.parts) {
     mass += part.mass;
-    parts.rows.push_back({part.name, part.parent, part.node == 0 ? "-" : std::to_string(part.node),
-                          std::to_string(part.num_elements), std::to_string(part.num_grids),
+    const std::string at = part.num_joined > 0 ? count(static_cast<std::size_t>(part.num_joined), "grid")
+                           : part.node == 0    ? "-"
+                                               : std::to_string(part.node);
+    parts.rows.push_back({part.name, part.parent, at, std::to_string(part.num_elements), std::to_string(part.num_grids),
                           answer.frequencies.empty() ? "-" : std::to_string(part.body.num_modes()),
                           fmt::format("{:.6g}", part.mass)});
   }
@@ -53,17 +55,25 @@ std::string format_split(const analysis::SplitAnswer& answer) {
     modes.rows.push_back({std::to_string(i + 1), fmt::format("{:.6g}", frequency.whole_hz),
                           fmt::format("{:.6g}", frequency.parts_hz), fmt::format("{:.1e}", frequency.error())});
   }
-  return text + "\n" + modes.to_text();
+  text += "\n" + modes.to_text();
+  if (answer.deflections.empty()) return text;
+  Table deflections{{"static load", "deflection", "error"}, {}};
+  for (const auto& deflection : answer.deflections)
+    deflections.rows.push_back(
+        {deflection.load, fmt::format("{:.6g}", deflection.deflection), fmt::format("{:.1e}", deflection.error)});
+  return text + "\n" + deflections.to_text();
 }
 
 nlohmann::json make_split_json(const analysis::SplitAnswer& answer, const std::vector<std::string>& files) {
-  nlohmann::json parts = nlohmann::json::array(), frequencies = nlohmann::json::array();
+  nlohmann::json parts = nlohmann::json::array(), frequencies = nlohmann::json::array(),
+                 deflections = nlohmann::json::array();
   double mass = 0;
   for (const auto& part : answer.parts) {
     mass += part.mass;
     parts.push_back({{"name", part.name},
                      {"parent", part.parent},
                      {"node", part.node},
+                     {"joined_grids", part.num_joined},
                      {"elements", part.num_elements},
                      {"grids", part.num_grids},
                      {"modes", part.body.num_modes()},
@@ -74,8 +84,11 @@ nlohmann::json make_split_json(const analysis::SplitAnswer& answer, const std::v
         {{"deck_hz", frequency.whole_hz},
          {"parts_hz", std::isfinite(frequency.parts_hz) ? nlohmann::json(frequency.parts_hz) : nlohmann::json(nullptr)},
          {"error", std::isfinite(frequency.parts_hz) ? nlohmann::json(frequency.error()) : nlohmann::json(nullptr)}});
-  return {
-      {"mass", answer.mass}, {"parts_mass", mass}, {"parts", parts}, {"frequencies", frequencies}, {"files", files}};
+  for (const auto& deflection : answer.deflections)
+    deflections.push_back(
+        {{"load", deflection.load}, {"deflection", deflection.deflection}, {"error", deflection.error}});
+  return {{"mass", answer.mass},        {"parts_mass", mass},         {"parts", parts},
+          {"frequencies", frequencies}, {"deflections", deflections}, {"files", files}};
 }
 
 int run_split(const SplitOptions& given) {
@@ -129,9 +142,10 @@ void add_split(CLI::App& app, Action& action) {
           "is a part, too")
       ->allow_extra_args(false);
   verb->add_option("--grids", choice.grids, "Cut at these grids")->delimiter(',');
-  verb->add_option("--interface", choice.interface,
-                   "Of a cut along several grids: rigid (RBE2 to a new grid) or average (RBE3)")
-      ->check(CLI::IsMember({"rigid", "average"}))
+  verb->add_option(
+          "--interface", choice.interface,
+          "Of a cut along several grids: rigid (RBE2 to a new grid), average (RBE3) or grids (a constraint at each)")
+      ->check(CLI::IsMember({"rigid", "average", "grids"}))
       ->capture_default_str();
   verb->add_option("--name", o->request.name, "Name of the bodies NAME-1, NAME-2, ... (default: the deck's)");
   verb->add_option("--modes", o->request.num_compared, "Elastic modes of the deck that the parts are to have")

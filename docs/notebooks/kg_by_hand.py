@@ -43,7 +43,8 @@ assert np.allclose(by_hand, in_file, rtol=0, atol=1e-6 * np.abs(in_file).max())
 # %%
 closed_form = 1.1933
 assert abs(in_file[0, 0] - closed_form) < 1e-3
-plt.rcParams.update({"axes.prop_cycle": plt.cycler(color=["#0072B2", "#D55E00"]), "axes.grid": True, "grid.alpha": 0.4})
+plt.rcParams.update({"axes.prop_cycle": plt.cycler(color=["#0072B2", "#D55E00"]), "axes.grid": True, "grid.alpha": 0.4,
+                     "axes.titlelocation": "left", "axes.titleweight": "bold"})
 figure, axes = plt.subplots(layout="tight")
 rates = np.linspace(0, 6, 61)
 flap = [np.sqrt(np.linalg.eigvalsh(body.modal_stiffness + r**2 * in_file)) for r in rates]

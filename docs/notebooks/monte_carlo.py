@@ -54,7 +54,8 @@ table = np.genfromtxt("scatter/outcomes.csv", delimiter=",", names=True, deletec
 modulus, rate, tip = table["E"], table["rate"], table["tip"]
 first = 2 * np.pi * table["hz.1"]
 print(f"{len(table)} cases; tip {tip.mean():.4f} m, deviation {tip.std(ddof=1):.4f}, from {tip.min():.4f} to {tip.max():.4f}")
-plt.rcParams.update({"axes.prop_cycle": plt.cycler(color=["#0072B2", "#D55E00"]), "axes.grid": True, "grid.alpha": 0.4})
+plt.rcParams.update({"axes.prop_cycle": plt.cycler(color=["#0072B2", "#D55E00"]), "axes.grid": True, "grid.alpha": 0.4,
+                     "axes.titlelocation": "left", "axes.titleweight": "bold"})
 figure, axes = plt.subplots(1, 2, figsize=(9, 4), layout="tight")
 axes[0].hist(tip, bins=15, edgecolor="white")
 axes[0].set(xlabel="least deflection of the tip [m]", ylabel="cases", title=f"Tip in {CASES} spin-ups")

@@ -19,6 +19,7 @@ ElementList make_elements(const records::Deck& deck, const NodeTable& nodes, Dia
   make_solids(maker);
   make_bends(maker);
   make_generals(maker);
+  make_connectors(maker);
   return list;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "base/number_text.hpp"
 #include "fe/sections/section_library.hpp"
 
 namespace bough::fe {
@@ -170,7 +171,7 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbeaml& card) 
     std::string problem;
     const auto section = calc_library_section(card.shape, station.dims, &problem);
     if (!section) {
-      maker_.error("fe.bad-section", card.at, who + " " + problem + " at station " + show(station.x_over_L),
+      maker_.error("fe.bad-section", card.at, who + " " + problem + " at station " + show_number(station.x_over_L),
                    "correct the shape or its dimensions");
       ok = false;
       continue;
@@ -203,18 +204,18 @@ bool BeamProperties::check(const BeamProperty& property, const std::string& who,
       maker_.error("fe.bad-property", at, who + what, advice);
       ok = false;
     };
-    const std::string where = property.is_uniform() ? "" : " at station " + show(s.x_over_L);
+    const std::string where = property.is_uniform() ? "" : " at station " + show_number(s.x_over_L);
     if (k > 0 && !(s.x_over_L > property.stations[k - 1].x_over_L))
-      fail(" has two stations at x/L = " + show(s.x_over_L), "give each station its own x/L");
+      fail(" has two stations at x/L = " + show_number(s.x_over_L), "give each station its own x/L");
     const std::pair<const char*, double> values[] = {{"A", s.A}, {"I1", s.I1}, {"I2", s.I2}, {"J", s.J}};
     for (const auto& [name, value] : values)
       if (!(value >= 0))
-        fail(std::string(" has ") + name + " = " + show(value) + where + ", expected zero or more",
+        fail(std::string(" has ") + name + " = " + show_number(value) + where + ", expected zero or more",
              "correct the property");
     if (!(s.A + s.I1 + s.I2 + s.J > 0))
       fail(" has no area and no inertia" + where, "give A and the moments of inertia");
     if (s.I12 != 0 && !(s.I1 * s.I2 > s.I12 * s.I12))
-      fail(" has I12 = " + show(s.I12) + where + ", but I1 I2 - I12^2 must be positive",
+      fail(" has I12 = " + show_number(s.I12) + where + ", but I1 I2 - I12^2 must be positive",
            "correct the moments of inertia");
     if (!(s.nsm >= 0 && s.nsi >= 0)) fail(" has a negative nonstructural mass" + where, "correct the property");
   }

@@ -1,6 +1,7 @@
 #include <optional>
 #include <string>
 
+#include "base/number_text.hpp"
 #include "fe/cards/beam_placement.hpp"
 #include "fe/cards/make_beam_properties.hpp"
 #include "fe/elements/beam.hpp"
@@ -57,8 +58,8 @@ void make_beam(Maker& maker, BeamProperties& properties, BeamFields& fields, con
       return;
     case BeamFault::Orientation:
       maker.error("fe.bad-orientation", card.at,
-                  who + " has its orientation vector (" + show((*orientation)[0]) + ", " + show((*orientation)[1]) +
-                      ", " + show((*orientation)[2]) + " in basic) " +
+                  who + " has its orientation vector (" + show_number((*orientation)[0]) + ", " +
+                      show_number((*orientation)[1]) + ", " + show_number((*orientation)[2]) + " in basic) " +
                       (orientation->isZero(0) ? "zero" : "along its axis"),
                   "give a vector or G0 that is not on the line of the element");
       return;

@@ -2,6 +2,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/number_text.hpp"
 #include "fe/cards/make_beam_properties.hpp"
 #include "fe/elements/bend.hpp"
 
@@ -70,11 +71,12 @@ std::shared_ptr<const BeamProperty> make_property(Maker& maker, const records::P
     return fail(" has FSI = " + std::to_string(card.fsi) + ", a flexibility factor of curved pipes, expected 1 (none)",
                 "give A, I1, I2, J with the factor in them");
   if (card.rc != 0 || card.zc != 0)
-    return fail(" has RC = " + show(card.rc) + ", ZC = " + show(card.zc) + ", expected an axis through the grids",
-                "put the grids on the axis, with rigid elements where it is off");
+    return fail(
+        " has RC = " + show_number(card.rc) + ", ZC = " + show_number(card.zc) + ", expected an axis through the grids",
+        "put the grids on the axis, with rigid elements where it is off");
   if (!(s.A > 0 && s.I1 > 0 && s.I2 > 0 && s.J > 0 && s.nsm >= 0))
-    return fail(" has A = " + show(s.A) + ", I1 = " + show(s.I1) + ", I2 = " + show(s.I2) + ", J = " + show(s.J) +
-                    ", expected positive values",
+    return fail(" has A = " + show_number(s.A) + ", I1 = " + show_number(s.I1) + ", I2 = " + show_number(s.I2) +
+                    ", J = " + show_number(s.J) + ", expected positive values",
                 "correct the property");
   if (!material) return nullptr;
   auto property = std::make_shared<BeamProperty>();

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/number_text.hpp"
 #include "fe/cards/maker.hpp"
 #include "fe/elements/rod.hpp"
 #include "fe/shape/gauss.hpp"
@@ -119,8 +120,8 @@ void make_rods(Maker& maker) {
         const bool ok = smallest > 0 && p->t >= 0 && 2 * p->t <= smallest && p->nsm >= 0;
         if (!ok)
           maker.error("fe.bad-property", p->at,
-                      name + " has diameters " + show(p->od) + ", " + show(p->od2.value_or(p->od)) + " and wall " +
-                          show(p->t) + ", expected 0 <= 2 t <= diameter",
+                      name + " has diameters " + show_number(p->od) + ", " + show_number(p->od2.value_or(p->od)) +
+                          " and wall " + show_number(p->t) + ", expected 0 <= 2 t <= diameter",
                       "correct the tube");
         made[card.pid] = material && ok ? std::optional(make_tube(*material, *p)) : std::nullopt;
       }

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/number_text.hpp"
 #include "fe/cards/maker.hpp"
 #include "fe/elements/shear_panel.hpp"
 
@@ -22,8 +23,8 @@ void make_shear_panels(Maker& maker) {
     if (!material || std::any_of(nodes.begin(), nodes.end(), [](int n) { return n < 0; })) continue;
     if (!(property->t > 0 && material->G > 0 && property->f1 >= 0 && property->f2 >= 0)) {
       maker.error("fe.bad-property", property->at,
-                  name + " has T = " + show(property->t) + ", G = " + show(material->G) +
-                      ", F1 = " + show(property->f1) + ", F2 = " + show(property->f2) +
+                  name + " has T = " + show_number(property->t) + ", G = " + show_number(material->G) +
+                      ", F1 = " + show_number(property->f1) + ", F2 = " + show_number(property->f2) +
                       ", expected T > 0, G > 0, F1 >= 0 and F2 >= 0",
                   "correct the property or its material");
       continue;

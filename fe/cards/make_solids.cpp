@@ -2,6 +2,7 @@
 #include <optional>
 #include <set>
 
+#include "base/number_text.hpp"
 #include "fe/cards/maker.hpp"
 #include "fe/elements/solid.hpp"
 
@@ -60,9 +61,10 @@ class MaterialMaker {
     const auto* m = maker_.find_material(property.mid, name, property.at);
     if (!m) return std::nullopt;
     if (!(m->nu > -1 && m->nu < 0.5)) {
-      maker_.error("fe.bad-material", m->at,
-                   "MAT1 " + std::to_string(m->id) + " has nu = " + show(m->nu) + ", expected -1 < nu < 0.5 in a solid",
-                   "correct the material");
+      maker_.error(
+          "fe.bad-material", m->at,
+          "MAT1 " + std::to_string(m->id) + " has nu = " + show_number(m->nu) + ", expected -1 < nu < 0.5 in a solid",
+          "correct the material");
       return std::nullopt;
     }
     SolidMaterial material;
@@ -87,7 +89,7 @@ class MaterialMaker {
 SolidScheme choose_scheme(Maker& maker, const records::Psolid& property, const records::SolidElement& card,
                           std::set<int>& reported) {
   if (!card.midsides.empty()) return {property.points, true};
-  if (card.corners.size() == 4 || (!property.is_full && property.points == 0)) return {};
+  if (card.corners.size() < 6 || (!property.is_full && property.points == 0)) return {};
   if (property.is_full && property.points > 0) return {property.points, true};
   if (reported.insert(property.id).second)
     maker.diagnostics().note(
@@ -121,9 +123,10 @@ void make_solids(Maker& maker) {
   for (const auto& card : deck.solids) {
     const std::string who = card.card + " " + std::to_string(card.id);
     SolidGeometry geometry;
-    geometry.kind = card.corners.size() == 8 ? SolidKind::Hexa
-                    : card.card == "CPENTA"  ? SolidKind::Penta
-                                             : SolidKind::Tetra;
+    geometry.kind = card.corners.size() == 8   ? SolidKind::Hexa
+                    : card.corners.size() == 6 ? SolidKind::Penta
+                    : card.corners.size() == 5 ? SolidKind::Pyramid
+                                               : SolidKind::Tetra;
     std::vector<int> nodes;
     for (int g : card.corners) nodes.push_back(maker.find_grid(g, who, card.at));
     for (int g : card.midsides) {
@@ -150,7 +153,7 @@ void make_solids(Maker& maker) {
       maker.error("fe.bad-solid", card.at,
                   who + (quality.volume == 0 ? std::string(" has no volume")
                                              : " folds over itself (least Jacobian over its mean " +
-                                                   show(quality.smallest_ratio) + ", expected above 0)"),
+                                                   show_number(quality.smallest_ratio) + ", expected above 0)"),
                   "check the order and the places of its grids");
       continue;
     }

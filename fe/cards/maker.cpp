@@ -1,15 +1,10 @@
 #include "fe/cards/maker.hpp"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "base/number_text.hpp"
 
 namespace bough::fe {
-
-std::string show(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 int Maker::find_point(int grid, const std::string& who, const records::CardLocation& at) {
   const int index = nodes_.find_node(grid);
@@ -44,8 +39,8 @@ const records::Mat1* Maker::find_material(int mid, const std::string& who, const
   material_ok_[mid] = ok;
   if (ok) return material;
   error("fe.bad-material", material->at,
-        "MAT1 " + std::to_string(mid) + " has E = " + show(material->E) + ", G = " + show(material->G) +
-            ", density = " + show(material->rho) + ", expected E > 0, G >= 0 and density >= 0",
+        "MAT1 " + std::to_string(mid) + " has E = " + show_number(material->E) + ", G = " + show_number(material->G) +
+            ", density = " + show_number(material->rho) + ", expected E > 0, G >= 0 and density >= 0",
         "correct the material");
   return nullptr;
 }

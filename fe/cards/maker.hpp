@@ -67,9 +67,6 @@ class Maker {
   std::unordered_map<int, bool> material_ok_;
 };
 
-/// A number as a message shows it (six digits, exponent where needed).
-std::string show(double value);
-
 /// CBAR and CBEAM with PBAR, PBARL, PBEAM, PBEAML, PBCOMP.
 void make_beams(Maker& maker);
 /// CROD, CONROD, CTUBE.
@@ -86,11 +83,13 @@ void make_shells(Maker& maker);
 void make_curved_shells(Maker& maker);
 /// CSHEAR.
 void make_shear_panels(Maker& maker);
-/// CHEXA, CPENTA, CTETRA, CIHEX3.
+/// CHEXA, CPENTA, CTETRA, CPYRAM, CIHEX3.
 void make_solids(Maker& maker);
 /// CBEND.
 void make_bends(Maker& maker);
 /// GENEL.
 void make_generals(Maker& maker);
+/// CFAST, CWELD.
+void make_connectors(Maker& maker);
 
 }  // namespace bough::fe

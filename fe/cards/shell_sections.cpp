@@ -4,6 +4,7 @@
 #include <numbers>
 #include <set>
 
+#include "base/number_text.hpp"
 #include "fe/sections/shell_stress.hpp"
 #include "formats/records/params.hpp"
 
@@ -269,7 +270,7 @@ std::optional<ShellSection> ShellSections::make_pcomp(const records::Pcomp& p) {
     const auto m = find_material(ply.mid, name, p.at);
     ok = ok && m && ply.t > 0;
     if (!(ply.t > 0))
-      maker_.error("fe.bad-property", p.at, name + " has a ply of thickness " + show(ply.t),
+      maker_.error("fe.bad-property", p.at, name + " has a ply of thickness " + show_number(ply.t),
                    "thicknesses are positive");
     if (m) layers.push_back({rotate_material(*m, ply.theta_deg * kDegree), ply.t});
   }

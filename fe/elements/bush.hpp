@@ -3,6 +3,7 @@
 /// Source: Nastran Quick Reference Guide, CBUSH and PBUSH.
 #include "fe/elements/damping.hpp"
 #include "fe/elements/element.hpp"
+#include "fe/elements/spring_rows.hpp"
 #include "fe/elements/stress_state.hpp"
 
 namespace bough::fe {
@@ -20,7 +21,7 @@ struct BushData {
 /// One node (grounded) or two. Half the mass at each end, translations only; the half of a grounded end is on the
 /// ground. K_G: the forces on the arms, and the axes of the spring, which turn with the mean of the two grids; a spring
 /// to ground keeps its axes.
-class Bush final : public Element, public StressState, public Damping {
+class Bush final : public Element, public StressState, public Damping, public SpringRows {
  public:
   Bush(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data);
 
@@ -42,6 +43,7 @@ class Bush final : public Element, public StressState, public Damping {
                                Eigen::Ref<MatrixXd> K_G) const override;
   /// Six spring forces in element axes, of B on the spring's B side.
   Eigen::Matrix<double, 6, 1> calc_spring_forces(const Eigen::Ref<const VectorXd>& u) const;
+  MatrixXd calc_spring_rows() const override { return calc_stretch(); }
 
  private:
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 12> calc_stretch() const;

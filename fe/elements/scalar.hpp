@@ -5,12 +5,13 @@
 #include "fe/elements/carried.hpp"
 #include "fe/elements/damping.hpp"
 #include "fe/elements/element.hpp"
+#include "fe/elements/spring_rows.hpp"
 #include "fe/elements/stress_state.hpp"
 
 namespace bough::fe {
 
 /// K = k b bᵀ; b holds the unit direction at the first end minus that at the second.
-class ScalarSpring final : public Element, public PrintedForces {
+class ScalarSpring final : public Element, public PrintedForces, public SpringRows {
  public:
   ScalarSpring(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, double k, VectorXd b)
       : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), k_(k), b_(std::move(b)) {}
@@ -24,6 +25,7 @@ class ScalarSpring final : public Element, public PrintedForces {
   VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override {
     return VectorXd::Constant(1, k_ * b_.dot(u));
   }
+  MatrixXd calc_spring_rows() const override { return b_.transpose(); }
 
  private:
   double k_;
@@ -31,7 +33,7 @@ class ScalarSpring final : public Element, public PrintedForces {
 };
 
 /// B = coefficient b bᵀ: a force against the difference of the two rates.
-class ScalarDamper final : public Element, public Damping {
+class ScalarDamper final : public Element, public Damping, public SpringRows {
  public:
   ScalarDamper(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, double coefficient, VectorXd b)
       : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), coefficient_(coefficient), b_(std::move(b)) {}
@@ -39,6 +41,7 @@ class ScalarDamper final : public Element, public Damping {
   ElementShape shape() const override { return nodes().size() == 2 ? ElementShape{"line2", nodes()} : ElementShape{}; }
   const Damping* damping() const override { return this; }
   void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
+  MatrixXd calc_spring_rows() const override { return b_.transpose(); }
 
  private:
   double coefficient_;

@@ -70,7 +70,8 @@ ElementShape Solid::shape() const {
   std::vector<int> corners(nodes().begin(), nodes().begin() + get_num_corners(geometry_.kind));
   const char* type = geometry_.kind == SolidKind::Hexa    ? "hexa8"
                      : geometry_.kind == SolidKind::Penta ? "penta6"
-                                                          : "tetra4";
+                     : geometry_.kind == SolidKind::Tetra ? "tetra4"
+                                                          : "pyramid5";
   return {type, std::move(corners)};
 }
 
@@ -372,9 +373,10 @@ SolidQuality calc_quality(const SolidGeometry& geometry) {
 void turn_round(SolidGeometry& geometry, std::vector<int>& nodes) {
   // Corners, and with them edges, that change places: below and above, or two corners of a tetrahedron.
   using Pairs = std::vector<std::pair<int, int>>;
-  static const Pairs corners[] = {{{0, 4}, {1, 5}, {2, 6}, {3, 7}}, {{0, 3}, {1, 4}, {2, 5}}, {{1, 2}}};
-  static const Pairs edges[] = {{{0, 8}, {1, 9}, {2, 10}, {3, 11}}, {{0, 6}, {1, 7}, {2, 8}}, {{0, 2}, {4, 5}}};
-  const int kind = geometry.kind == SolidKind::Hexa ? 0 : geometry.kind == SolidKind::Penta ? 1 : 2;
+  static const Pairs corners[] = {{{0, 4}, {1, 5}, {2, 6}, {3, 7}}, {{0, 3}, {1, 4}, {2, 5}}, {{1, 2}}, {{1, 3}}};
+  static const Pairs edges[] = {
+      {{0, 8}, {1, 9}, {2, 10}, {3, 11}}, {{0, 6}, {1, 7}, {2, 8}}, {{0, 2}, {4, 5}}, {{0, 3}, {1, 2}, {5, 7}}};
+  const auto kind = static_cast<std::size_t>(geometry.kind);
   for (const auto& [a, b] : corners[kind]) {
     std::swap(geometry.x[static_cast<std::size_t>(a)], geometry.x[static_cast<std::size_t>(b)]);
     std::swap(nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)]);

@@ -1,15 +1,15 @@
 #pragma once
-/// \file Solid elements with 4 to 20 nodes (CTETRA, CPENTA, CHEXA), and 32 (CIHEX3): three translations per node, basic
-/// axes.
+/// \file Solid elements with 4 to 20 nodes (CTETRA, CPYRAM, CPENTA, CHEXA), and 32 (CIHEX3): three translations per
+/// node, basic axes.
 ///
 /// Isoparametric, full quadrature. The brick of eight nodes has in addition the nine incompatible modes of Wilson in
 /// the form of Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219, so that one layer of bricks bends without locking
 /// and the patch test still holds. The wedge of six nodes has the same of 1 - ζ² and of the three quadratics over its
 /// triangle, so that one layer bends over its thickness; in the plane of its triangle it strains as the triangle of
-/// three nodes. The tetrahedron of four nodes is the plain, stiff element. Geometric stiffness ∫ σ_ab u,a·u,b (Cook et
-/// al., "Concepts and applications of finite element analysis", 4th ed., eq. 18.4-10). Lumped mass: the diagonal of the
-/// consistent one, scaled (Hinton, Rock & Zienkiewicz 1976). SolidScheme takes the inner modes away or sets the order
-/// of the quadrature, as IN and ISOP of PSOLID do.
+/// three nodes. The tetrahedron of four nodes and the pyramid of five are plain, stiff elements. Geometric stiffness ∫
+/// σ_ab u,a·u,b (Cook et al., "Concepts and applications of finite element analysis", 4th ed., eq. 18.4-10). Lumped
+/// mass: the diagonal of the consistent one, scaled (Hinton, Rock & Zienkiewicz 1976). SolidScheme takes the inner
+/// modes away or sets the order of the quadrature, as IN and ISOP of PSOLID do.
 #include "fe/elements/element.hpp"
 #include "fe/elements/spin.hpp"
 #include "fe/elements/stress_recovery.hpp"
@@ -81,7 +81,7 @@ class Solid final : public Element, public StressState, public StressRecovery, p
   MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const;
   /// Strains C⁻¹ σ; if C is singular, those of minimum norm.
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
-  /// Number of corners: 8, 6 or 4.
+  /// Number of corners: 8, 6, 4 or 5.
   int num_corners() const { return get_num_corners(geometry_.kind); }
   /// Mechanical strains at the corners, six per corner in the order of the grids; a column per column of `forces`.
   MatrixXd calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const;
@@ -106,8 +106,8 @@ class Solid final : public Element, public StressState, public StressRecovery, p
   bool is_quadratic() const { return static_cast<int>(geometry_.x.size()) > get_num_corners(geometry_.kind); }
   bool has_modes() const { return num_modes() > 0; }
   int num_modes() const {
-    if (geometry_.scheme.is_plain || geometry_.kind == SolidKind::Tetra || is_quadratic()) return 0;
-    return geometry_.kind == SolidKind::Hexa ? 3 : 4;
+    if (geometry_.scheme.is_plain || is_quadratic()) return 0;
+    return geometry_.kind == SolidKind::Hexa ? 3 : geometry_.kind == SolidKind::Penta ? 4 : 0;
   }
   MatrixXd calc_force_map(const std::vector<Field>& fields) const;  ///< internal forces per dof
   MatrixXd calc_mode_map(const std::vector<Field>& fields, MatrixXd* condensed) const;

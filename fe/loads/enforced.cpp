@@ -1,20 +1,12 @@
 #include "fe/loads/enforced.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "base/number_text.hpp"
 #include "fe/model/load_selection.hpp"
+#include "fe/model/named_grid.hpp"
 
 namespace bough::fe {
-namespace {
-
-std::string show_factor(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-}  // namespace
 
 bool is_held_for(const Model& model, const records::Deck& deck, int set) {
   const auto &fixed = model.fixed_dofs(), &by_spcd = model.fixed_by_spcd();
@@ -46,14 +38,8 @@ VectorXd calc_enforced(const Model& model, const records::Deck& deck, int set, D
       if (card.sid != sid) continue;
       is_combined = sid != set;
       const SourceLocation at = deck.locate(card.at);
-      const int index = model.find_node(card.g);
-      if (index < 0 && model.is_refused(card.g)) continue;
-      if (index < 0) {
-        diagnostics.error("fe.missing-grid", at,
-                          "SPCD names grid " + std::to_string(card.g) + ", which the deck does not define",
-                          "add the GRID or correct the id");
-        continue;
-      }
+      const int index = find_named_grid(model, card.g, "SPCD", at, diagnostics);
+      if (index < 0) continue;
       const Node& where = model.node(index);
       if (where.num_dofs == 6 && card.c == 0) {
         diagnostics.error("fe.bad-component", at,
@@ -78,7 +64,7 @@ VectorXd calc_enforced(const Model& model, const records::Deck& deck, int set, D
     if (is_combined)
       diagnostics.warning("fe.spcd-combined", deck.locate(plain.at),
                           "LOAD " + std::to_string(set) + " combines the SPCD cards of set " + std::to_string(sid) +
-                              ", which MSC Nastran leaves out; they are taken " + show_factor(plain.scale) + " times",
+                              ", which MSC Nastran leaves out; they are taken " + show_number(plain.scale) + " times",
                           "give the SPCD cards the id of the LOAD card for their own values");
   }
   for (Eigen::Index i = 0; i < d.size(); ++i)

@@ -4,18 +4,13 @@
 
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/loads/load_sets.hpp"
+#include "fe/model/named_grid.hpp"
 #include "formats/records/selection.hpp"
 
 namespace bough::fe {
 
 int LoadTarget::find_grid(int id, const std::string& card, const records::CardLocation& at) const {
-  const int index = model.find_node(id);
-  if (index >= 0 && model.node(index).num_dofs == 6) return index;
-  if (index < 0 && model.is_refused(id)) return -1;
-  diagnostics.error("fe.missing-grid", deck.locate(at),
-                    card + " names grid " + std::to_string(id) + ", which the deck does not define",
-                    "add the GRID or correct the id");
-  return -1;
+  return find_named_six(model, id, card, deck.locate(at), diagnostics);
 }
 
 namespace {

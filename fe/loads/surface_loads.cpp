@@ -20,6 +20,8 @@ const FaceTable& get_faces(SolidKind kind) {
   static const FaceTable hexa{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
   static const FaceTable penta{{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
   static const FaceTable tetra{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  static const FaceTable pyramid{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  if (kind == SolidKind::Pyramid) return pyramid;
   return kind == SolidKind::Hexa ? hexa : kind == SolidKind::Penta ? penta : tetra;
 }
 
@@ -43,6 +45,7 @@ void add_side(const records::SolidElement& solid, SolidKind kind, int i, int j, 
 Face find_solid_face(const records::SolidElement& solid, int g1, int g34) {
   const SolidKind kind = solid.corners.size() == 8   ? SolidKind::Hexa
                          : solid.corners.size() == 6 ? SolidKind::Penta
+                         : solid.corners.size() == 5 ? SolidKind::Pyramid
                                                      : SolidKind::Tetra;
   const auto position = [&](int grid) {
     return static_cast<int>(std::find(solid.corners.begin(), solid.corners.end(), grid) - solid.corners.begin());
@@ -53,7 +56,10 @@ Face find_solid_face(const records::SolidElement& solid, int g1, int g34) {
     if (start == face.end()) continue;
     const int n = static_cast<int>(face.size()), first = static_cast<int>(start - face.begin());
     const bool has_b = std::find(face.begin(), face.end(), b) != face.end();
+    // A triangle of a pyramid: G1 with the next corner of the base, counted either way, and the apex.
+    const bool is_side = kind == SolidKind::Pyramid && n == 3;
     const bool matches = kind == SolidKind::Tetra ? b >= 0 && b < 4 && !has_b
+                         : is_side                ? b >= 0 && a < 4 && has_b && b < 4
                          : n == 3                 ? b < 0
                                                   : b >= 0 && face[static_cast<std::size_t>((first + 2) % 4)] == b;
     if (!matches) continue;

@@ -4,65 +4,11 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "fe/cards/temperature_set.hpp"
 #include "formats/records/selection.hpp"
 
 namespace bough::fe {
 namespace {
-
-/// The cards of one set by what they heat.
-class TemperatureSet {
- public:
-  TemperatureSet(const records::TemperatureCards& cards, int set) {
-    const auto fill = [set](const auto& list, auto& map, auto key) {
-      for (const auto& card : list)
-        if (card.sid == set) map[key(card)] = &card;
-    };
-    const auto by_element = [](const auto& card) { return card.element; };
-    fill(cards.grids, grids_, [](const auto& card) { return card.g; });
-    fill(cards.bars, bars_, by_element);
-    fill(cards.plates, plates_, by_element);
-    for (const auto& card : cards.defaults)
-      if (card.sid == set) default_ = card.t;
-  }
-
-  bool is_empty() const { return grids_.empty() && bars_.empty() && plates_.empty() && !default_; }
-
-  /// Temperatures of the card of the element, else of its grids; `missing`: the first grid without a temperature.
-  std::optional<ElementTemperature> find(const Model& model, const Element& element, int& missing) const {
-    ElementTemperature T;
-    T.node.resize(static_cast<Eigen::Index>(element.nodes().size()));
-    const bool is_line = element.shape().type == "line2";
-    const auto own = is_line ? bars_.find(element.id()) : bars_.end();
-    if (own != bars_.end()) {
-      T.node << own->second->t_a, own->second->t_b;
-      T.gradient_a = own->second->gradient_a;
-      T.gradient_b = own->second->gradient_b;
-      return T;
-    }
-    const bool is_plate = element.shape().type.rfind("tri", 0) == 0 || element.shape().type.rfind("quad", 0) == 0;
-    if (const auto plate = plates_.find(element.id()); is_plate && plate != plates_.end()) {
-      T.node.setConstant(plate->second->t);
-      T.gradient_z = plate->second->gradient;
-      return T;
-    }
-    for (Eigen::Index i = 0; i < T.node.size(); ++i) {
-      const int id = model.node(element.nodes()[static_cast<std::size_t>(i)]).id;
-      const auto grid = grids_.find(id);
-      if (grid == grids_.end() && !default_) {
-        missing = id;
-        return std::nullopt;
-      }
-      T.node[i] = grid != grids_.end() ? grid->second->t : *default_;
-    }
-    return T;
-  }
-
- private:
-  std::unordered_map<int, const records::GridTemperature*> grids_;
-  std::unordered_map<int, const records::BarTemperature*> bars_;
-  std::unordered_map<int, const records::PlateTemperature*> plates_;
-  std::optional<double> default_;
-};
 
 /// Cards that heat what is not there, and two of them that differ for one grid or element.
 void report_slips(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
@@ -108,6 +54,14 @@ void report_slips(const Model& model, const records::Deck& deck, int set, Diagno
       [](const auto& a, const auto& b) { return a.t == b.t && a.gradient == b.gradient; });
 }
 
+/// Temperatures of the card of the element, else of its grids; `missing`: the first grid without a temperature.
+std::optional<ElementTemperature> find_temperature(const Model& model, const TemperatureSet& set,
+                                                   const Element& element, int& missing) {
+  std::vector<int> grids;
+  for (const int node : element.nodes()) grids.push_back(model.node(node).id);
+  return set.find(element.id(), find_temperature_kind(element.shape().type), grids, missing);
+}
+
 }  // namespace
 
 InitialForces calc_thermal(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
@@ -136,8 +90,8 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
     const ThermalLoads* thermal = element->thermal_loads();
     if (!thermal) continue;
     int grid = 0;
-    auto T = temperatures.find(model, *element, grid);
-    const auto T_0 = T && from != 0 ? initial.find(model, *element, grid) : std::nullopt;
+    auto T = find_temperature(model, temperatures, *element, grid);
+    const auto T_0 = T && from != 0 ? find_temperature(model, initial, *element, grid) : std::nullopt;
     if (!T || (from != 0 && !T_0)) {
       if (num_missing++ == 0) first_missing = element.get(), first_grid = grid, first_set = T ? from : set;
       continue;

@@ -2,22 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
+#include "base/number_text.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
 
 namespace bough::fe {
 namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-std::string show_value(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value + 0.0);
-  return text;
-}
 
 records::CardLocation find_card(const records::Deck& deck, const std::string& card, int id) {
   const auto find = [&](const auto& list) {
@@ -59,8 +53,8 @@ std::string describe_mass(const Model& model, const records::Deck& deck, const M
                           SourceLocation& at) {
   const auto weight = calc_grid_point_weight(rigid_mass);
   const bool is_basic = weight.S.isIdentity(0);
-  std::string text = "the mass is " + show_value(weight.mass[0]) + " along x, " + show_value(weight.mass[1]) +
-                     " along y, " + show_value(weight.mass[2]) + " along z" +
+  std::string text = "the mass is " + show_number(weight.mass[0]) + " along x, " + show_number(weight.mass[1]) +
+                     " along y, " + show_number(weight.mass[2]) + " along z" +
                      (is_basic ? "" : " of its principal axes");
   const auto wrong = find_wrong_masses(model);
   std::vector<std::string> names;

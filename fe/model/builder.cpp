@@ -5,7 +5,9 @@
 #include <set>
 #include <utility>
 
+#include "base/number_text.hpp"
 #include "fe/cards/maker.hpp"
+#include "fe/cards/material_temperatures.hpp"
 #include "fe/cards/nonstructural.hpp"
 #include "fe/model/coordinates.hpp"
 #include "fe/model/direct_matrices.hpp"
@@ -86,7 +88,8 @@ void ModelBuilder::make_elements(const ElementFactory& factory) {
     model_.has_damping_ = model_.has_damping_ || list.has_damping;
     for (auto& element : list.elements) model_.elements_.push_back(std::move(element));
   };
-  add(factory(deck_, model_, diagnostics_));
+  const auto at_temperature = evaluate_materials(deck_, model_.subcase_, diagnostics_);
+  add(factory(at_temperature ? *at_temperature : deck_, model_, diagnostics_));
   report_unmodelled(deck_, model_.cards_, diagnostics_);
   ElementList direct = make_direct(deck_, model_.subcase_, model_, diagnostics_);
   if (options_.adjust_direct && !direct.elements.empty())
@@ -174,8 +177,9 @@ void ModelBuilder::fix(const records::Spc& spc) {
       if (is_new || known->second == spc.d) continue;
       diagnostics_.warning("fe.enforced-twice", at,
                            "SPC set " + std::to_string(spc.sid) + " moves grid " + std::to_string(spc.g) +
-                               " component " + std::to_string(node.num_dofs == 1 ? 0 : c + 1) + " by " + show(spc.d) +
-                               ", and another card by " + show(known->second) + "; the last card is taken",
+                               " component " + std::to_string(node.num_dofs == 1 ? 0 : c + 1) + " by " +
+                               show_number(spc.d) + ", and another card by " + show_number(known->second) +
+                               "; the last card is taken",
                            "remove one of the two cards");
       known->second = spc.d;
     }

@@ -8,6 +8,7 @@
 #include "fe/elements/stress_state.hpp"
 #include "fe/model/builder.hpp"
 #include "fe/model/coordinates.hpp"
+#include "fe/model/named_grid.hpp"
 
 namespace bough::fe {
 
@@ -87,14 +88,8 @@ std::pair<int, int> Model::describe_fdof(int fdof) const {
 
 int Model::find_ldof(int grid, int component, const std::string& card, const SourceLocation& at,
                      Diagnostics& diagnostics) const {
-  const int index = find_node(grid);
-  if (index < 0 && is_refused(grid)) return -1;
-  if (index < 0) {
-    diagnostics.error("fe.missing-grid", at,
-                      card + " names grid " + std::to_string(grid) + ", which the deck does not define",
-                      "add the GRID or correct the id");
-    return -1;
-  }
+  const int index = find_named_grid(*this, grid, card, at, diagnostics);
+  if (index < 0) return -1;
   const Node& node = nodes_[index];
   const bool is_scalar = node.num_dofs == 1;
   if (is_scalar ? component > 1 : component < 1 || component > 6) {

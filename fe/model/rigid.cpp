@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/rotation.hpp"
+#include "fe/model/named_grid.hpp"
 
 namespace bough::fe {
 namespace {
@@ -79,13 +80,8 @@ void add_body_link(const BodyFrame& frame, const BodyTerm& dependent, int first,
 
 const Node* find_rigid_grid(int id, const std::string& card, const NodeTable& nodes, const SourceLocation& at,
                             Diagnostics& diagnostics) {
-  const int index = nodes.find_node(id);
-  if (index >= 0 && nodes.node(index).num_dofs == 6) return &nodes.node(index);
-  if (index < 0 && nodes.is_refused(id)) return nullptr;
-  diagnostics.error("fe.missing-grid", at,
-                    card + " names grid " + std::to_string(id) + ", which the deck does not define",
-                    "add the GRID or correct the id");
-  return nullptr;
+  const int index = find_named_six(nodes, id, card, at, diagnostics);
+  return index < 0 ? nullptr : &nodes.node(index);
 }
 
 Matrix6d calc_rigid_map(const Node& node, const Vector3d& reference) {

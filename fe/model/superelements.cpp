@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
 #include <map>
 #include <optional>
 
+#include "base/number_text.hpp"
 #include "fe/elements/solve_in_range.hpp"
 #include "fe/elements/superelement.hpp"
 #include "fe/model/coordinates.hpp"
@@ -14,12 +14,6 @@ namespace bough::fe {
 namespace {
 
 using Eigen::Index;
-
-std::string show_distance(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 constexpr int kQuad = 33, kTria = 74;  // CQUAD4, CTRIA3
 
@@ -168,8 +162,9 @@ class SuperelementMaker {
              -1;
     const double away = own ? (node.x - x).norm() : 0;
     if (own && record_.checks_places && away > calc_tolerance(x))
-      return error(who + " is " + show_distance(away) + " away from grid " + std::to_string(node.id) + " that it joins",
-                   "the matrices are of another boundary, or the component was moved: SELOC is not supported"),
+      return error(
+                 who + " is " + show_number(away, 3) + " away from grid " + std::to_string(node.id) + " that it joins",
+                 "the matrices are of another boundary, or the component was moved: SELOC is not supported"),
              -1;
     return index;
   }

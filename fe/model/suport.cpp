@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "fe/model/named_grid.hpp"
 #include "fe/model/sets.hpp"
 
 namespace bough::fe {
@@ -12,14 +13,8 @@ namespace {
 /// f-dofs of one entry of SUPORT.
 void add_fdofs(const Model& model, const records::GridComponents& term, const SourceLocation& at,
                Diagnostics& diagnostics, std::vector<int>& fdofs) {
-  const int index = model.find_node(term.g);
-  if (index < 0 && model.is_refused(term.g)) return;
-  if (index < 0) {
-    diagnostics.error("fe.missing-grid", at,
-                      "SUPORT names grid " + std::to_string(term.g) + ", which the deck does not define",
-                      "add the GRID or correct the id");
-    return;
-  }
+  const int index = find_named_grid(model, term.g, "SUPORT", at, diagnostics);
+  if (index < 0) return;
   const bool is_scalar = model.node(index).num_dofs == 1;
   if (!is_scalar && term.c == 0) {
     diagnostics.error("fe.bad-component", at, "SUPORT names no component of grid " + std::to_string(term.g),

@@ -1,7 +1,9 @@
 #include "fe/shape/solid_shape.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace bough::fe {
 
@@ -14,12 +16,15 @@ const std::vector<std::pair<int, int>> kHexaEdges = {{0, 1}, {1, 2}, {2, 3}, {3,
                                                      {2, 6}, {3, 7}, {4, 5}, {5, 6}, {6, 7}, {7, 4}};
 const std::vector<std::pair<int, int>> kPentaEdges = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 4},
                                                       {2, 5}, {3, 4}, {4, 5}, {5, 3}};
+const std::vector<std::pair<int, int>> kPyramidEdges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
+/// The functions have no gradient at the apex: there it is that of a point next to it on the axis.
+constexpr double kNextToApex = 1e-9;
 const std::vector<std::pair<int, int>> kTetraEdges = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
 
 /// A value with its gradient: products of these give every bump and its derivative.
 struct Term {
-  double value;
-  Eigen::Vector3d gradient;
+  double value = 0;
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   friend Term operator*(const Term& a, const Term& b) {
     return {a.value * b.value, a.value * b.gradient + b.value * a.gradient};
   }
@@ -44,9 +49,22 @@ Gauss get_gauss(int n) {
 
 }  // namespace
 
-int get_num_corners(SolidKind kind) { return kind == SolidKind::Hexa ? 8 : kind == SolidKind::Penta ? 6 : 4; }
+int get_num_corners(SolidKind kind) {
+  switch (kind) {
+    case SolidKind::Hexa:
+      return 8;
+    case SolidKind::Penta:
+      return 6;
+    case SolidKind::Tetra:
+      return 4;
+    case SolidKind::Pyramid:
+      return 5;
+  }
+  return 0;
+}
 
 const std::vector<std::pair<int, int>>& get_edges(SolidKind kind) {
+  if (kind == SolidKind::Pyramid) return kPyramidEdges;
   return kind == SolidKind::Hexa ? kHexaEdges : kind == SolidKind::Penta ? kPentaEdges : kTetraEdges;
 }
 
@@ -57,6 +75,8 @@ std::vector<Eigen::Vector3d> list_nodes(SolidKind kind, const std::vector<int>& 
       nodes.emplace_back(kHexaCorner[i][0], kHexaCorner[i][1], kHexaCorner[i][2]);
     else if (kind == SolidKind::Penta)
       nodes.emplace_back(i % 3 == 1, i % 3 == 2, i < 3 ? -1 : 1);
+    else if (kind == SolidKind::Pyramid)
+      nodes.emplace_back(i < 4 ? kHexaCorner[i][0] : 0, i < 4 ? kHexaCorner[i][1] : 0, i < 4 ? 0 : 1);
     else
       nodes.emplace_back(i == 1, i == 2, i == 3);
   }
@@ -79,12 +99,45 @@ std::vector<Eigen::Vector3d> list_nodes(SolidKind kind, const std::vector<int>& 
   return nodes;
 }
 
+namespace {
+
+/// Bedrosian's pyramid: corners, and bumps of the midside nodes.
+class Pyramid {
+ public:
+  explicit Pyramid(Eigen::Vector3d at) {
+    at.z() = std::min(at.z(), 1 - kNextToApex);
+    const double rest = 1 - at.z();
+    inverse_ = {1 / rest, Eigen::Vector3d(0, 0, 1 / (rest * rest))};
+    zeta_ = linear(0, 0, 0, 1, at);
+    for (int a = 0; a < 2; ++a)
+      for (const int sign : {-1, 1}) side_[a][sign > 0] = linear(1, a == 0 ? sign : 0, a == 1 ? sign : 0, -1, at);
+  }
+  Term corner(int i) const {
+    if (i == 4) return zeta_;
+    return 0.25 * (get(0, kHexaCorner[i][0]) * get(1, kHexaCorner[i][1]) * inverse_);
+  }
+  /// 1 at the middle of edge (i, j), zero at every other node.
+  Term bump(int i, int j) const {
+    if (j == 4) return zeta_ * get(0, kHexaCorner[i][0]) * get(1, kHexaCorner[i][1]) * inverse_;
+    const int along = kHexaCorner[i][0] == kHexaCorner[j][0] ? 1 : 0;
+    return 0.5 * (get(along, -1) * get(along, 1) * get(1 - along, kHexaCorner[i][1 - along]) * inverse_);
+  }
+
+ private:
+  /// 1 - ζ ± ξ or ± η.
+  const Term& get(int axis, double sign) const { return side_[axis][sign > 0]; }
+  Term inverse_, zeta_, side_[2][2];
+};
+
+}  // namespace
+
 void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eigen::Vector3d& natural,
                       Eigen::VectorXd& shape, Eigen::Matrix3Xd& dshape) {
   const int corners = get_num_corners(kind);
   const auto& edges = get_edges(kind);
   const Term L[4] = {linear(1, -1, -1, kind == SolidKind::Tetra ? -1 : 0, natural), linear(0, 1, 0, 0, natural),
                      linear(0, 0, 1, 0, natural), linear(0, 0, 0, 1, natural)};
+  const auto pyramid = kind == SolidKind::Pyramid ? std::optional<Pyramid>(natural) : std::nullopt;
   const Term below = linear(0.5, 0, 0, -0.5, natural), above = linear(0.5, 0, 0, 0.5, natural);
   auto factor = [&](int axis, double sign) {
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
@@ -98,11 +151,13 @@ void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eig
   auto corner = [&](int i) -> Term {
     if (kind == SolidKind::Tetra) return L[i];
     if (kind == SolidKind::Penta) return L[i % 3] * (i < 3 ? below : above);
+    if (kind == SolidKind::Pyramid) return pyramid->corner(i);
     return factor(0, kHexaCorner[i][0]) * factor(1, kHexaCorner[i][1]) * factor(2, kHexaCorner[i][2]);
   };
   // One at the middle of edge (i, j), zero at every other node.
   auto bump = [&](int i, int j) -> Term {
     if (kind == SolidKind::Tetra) return 4 * (L[i] * L[j]);
+    if (kind == SolidKind::Pyramid) return pyramid->bump(i, j);
     if (kind == SolidKind::Penta) {
       if (j == i + 3) return 4 * (L[i] * (below * above));
       return 4 * (L[i % 3] * L[j % 3] * (i < 3 ? below : above));
@@ -165,6 +220,20 @@ std::vector<SolidPoint> calc_solid_points(SolidKind kind, bool quadratic, bool m
       for (std::size_t j = 0; j < g.x.size(); ++j)
         for (std::size_t k = 0; k < g.x.size(); ++k)
           points.push_back({{g.x[i], g.x[j], g.x[k]}, g.w[i] * g.w[j] * g.w[k]});
+    return points;
+  }
+  if (kind == SolidKind::Pyramid) {
+    // ξ = (1 - ζ) r, η = (1 - ζ) s: polynomials in r, s and ζ for a straight pyramid over a parallelogram, and exact.
+    const Gauss across = get_gauss(quadratic || mass ? 3 : 2), z = get_gauss(quadratic && mass   ? 4
+                                                                             : quadratic || mass ? 3
+                                                                                                 : 2);
+    for (std::size_t k = 0; k < z.x.size(); ++k) {
+      const double zeta = 0.5 * (1 + z.x[k]), rest = 1 - zeta;
+      for (std::size_t i = 0; i < across.x.size(); ++i)
+        for (std::size_t j = 0; j < across.x.size(); ++j)
+          points.push_back(
+              {{rest * across.x[i], rest * across.x[j], zeta}, 0.5 * z.w[k] * across.w[i] * across.w[j] * rest * rest});
+    }
     return points;
   }
   if (kind == SolidKind::Tetra && !mass) {

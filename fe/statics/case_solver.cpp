@@ -25,8 +25,13 @@ std::size_t choose_group(std::size_t left) {
 }
 
 /// Selections that two subcases share if they share the model and its factor.
-std::array<int, 5> list_held(const records::Subcase& subcase) {
-  return {subcase.spc, subcase.mpc, subcase.suport1, subcase.preload, subcase.initial_temperature};
+std::array<int, 6> list_held(const records::Subcase& subcase) {
+  return {subcase.spc,
+          subcase.mpc,
+          subcase.suport1,
+          subcase.preload,
+          subcase.initial_temperature,
+          subcase.material_temperature};
 }
 
 /// Takes over the results of solve_static_cases; the head stays.

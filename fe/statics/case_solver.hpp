@@ -58,8 +58,9 @@ class CaseSolver {
   ModelOptions options_;
   std::optional<std::vector<int>> grids_;
   bool has_strains_ = false;
-  std::optional<std::array<int, 5>> held_;  ///< SPC, MPC, SUPORT1, preload, TEMPERATURE(INITIAL) of what is kept
-  std::exception_ptr failure_;              ///< what came of them
+  /// SPC, MPC, SUPORT1, preload, TEMPERATURE(INITIAL), TEMPERATURE(MATERIAL) of what is kept
+  std::optional<std::array<int, 6>> held_;
+  std::exception_ptr failure_;  ///< what came of them
   std::optional<Model> model_;
   std::unique_ptr<StaticSolver> solver_;
   std::optional<RecoveryLayout> layout_;

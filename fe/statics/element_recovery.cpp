@@ -60,6 +60,13 @@ struct Current {
   MatrixXd forces{};                          ///< internal forces, with those of loads and temperatures
 };
 
+/// Writes what a pair of tables of each group, by half of the elements, still holds.
+template <class Tables>
+void flush(Tables& tables) {
+  for (auto& of_half : tables)
+    for (auto& table : of_half) table.flush();
+}
+
 /// Stresses or strains of all groups.
 class PointTables {
  public:
@@ -111,9 +118,8 @@ class PointTables {
   }
 
   void finish() {
-    for (auto* halves : {&tables_, &corners_})
-      for (auto& of_half : *halves)
-        for (auto& table : of_half) table.flush();
+    flush(tables_);
+    flush(corners_);
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (auto& result : results_) {
         auto& block = (result.*blocks_)[g];
@@ -195,9 +201,8 @@ class ForceTables {
   }
 
   void finish() {
-    for (auto* halves : {&tables_, &energy_tables_})
-      for (auto& of_half : *halves)
-        for (auto& table : of_half) table.flush();
+    flush(tables_);
+    flush(energy_tables_);
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (std::size_t c = 0; c < results_.size(); ++c) {
         auto& block = results_[c].forces[g];

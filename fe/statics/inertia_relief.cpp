@@ -1,24 +1,15 @@
 #include "fe/statics/inertia_relief.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Eigenvalues>
 
+#include "base/number_text.hpp"
 #include "fe/linear/null_space.hpp"
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/model/sets.hpp"
 
 namespace bough::fe {
-namespace {
-
-std::string show_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-}  // namespace
 
 SourceLocation locate_relief(const Model& model, const records::Deck& deck) {
   if (!deck.suport.empty()) return deck.locate(deck.suport[0].at);
@@ -90,8 +81,8 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
     if (suport.strain_energy[j] <= linear::kMechanismEnergy * diagonal) continue;
     const auto [grid, component] = model.describe_fdof(suport.fdofs[static_cast<std::size_t>(j)]);
     const std::string what = "the motion of SUPORT " + name_suport(grid, component) + " strains the model: energy " +
-                             show_number(suport.strain_energy[j]) + " for a unit, epsilon " +
-                             show_number(suport.epsilon);
+                             show_number(suport.strain_energy[j], 3) + " for a unit, epsilon " +
+                             show_number(suport.epsilon, 3);
     const std::string advice =
         "SUPORT must hold a free body in a statically determinate way; look for SPC, grounded "
         "springs or too many dofs";
@@ -99,7 +90,7 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
       throw InputError("fe.suport-strained", where,
                        "PARAM,INREL,-2 is for a free body, this one is held: a rigid-body motion, at " +
                            name_suport(grid, component) + ", strains it with energy " +
-                           show_number(suport.strain_energy[j]) + " for a unit",
+                           show_number(suport.strain_energy[j], 3) + " for a unit",
                        model.subcase().spc != 0 ? "take out SPC = " + std::to_string(model.subcase().spc) +
                                                       " and grounded springs, or leave out INREL"
                                                 : "look for grounded springs, or leave out INREL");

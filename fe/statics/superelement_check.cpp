@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
+#include "base/number_text.hpp"
 #include "base/rotation.hpp"
 #include "fe/elements/superelement.hpp"
 #include "fe/matrices/mass_directions.hpp"
@@ -21,12 +21,6 @@ constexpr double kGrounded = 1e-9;  // share of strain energy: condensation leav
 constexpr double kRoundoff = 1e-12;
 constexpr double kCoupled = 1e-8;    // of sqrt(K_bb K_qq)
 constexpr double kNegative = -1e-9;  // of a mass with a diagonal of ones
-
-std::string show_value(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 /// Rows of exterior dofs, split: those of grids with their rigid-body motions about `centre`, those of scalar points.
 struct Boundary {
@@ -148,21 +142,21 @@ SuperelementCheck check_superelement(const records::Deck& deck, const records::S
   const std::string who = "superelement " + std::to_string(s.id);
   const auto at = deck.locate(s.at);
   if (check.rigid_energy.maxCoeff() > kGrounded)
-    diagnostics.warning("fe.superelement-grounded", at,
-                        who +
-                            " resists rigid-body motion of its boundary: " + show_value(check.rigid_energy.maxCoeff()) +
-                            " of the strain energy that its stiffness allows, expected below 1e-9",
-                        "look for supports or springs to ground in the component, and for boundary grids of other "
-                        "places or displacement axes");
+    diagnostics.warning(
+        "fe.superelement-grounded", at,
+        who + " resists rigid-body motion of its boundary: " + show_number(check.rigid_energy.maxCoeff(), 3) +
+            " of the strain energy that its stiffness allows, expected below 1e-9",
+        "look for supports or springs to ground in the component, and for boundary grids of other "
+        "places or displacement axes");
   if (check.coupling > kCoupled)
     diagnostics.note("fe.superelement-coupled", at,
-                     who + " couples its boundary and its generalized coordinates in K: " + show_value(check.coupling) +
-                         " of the diagonal",
+                     who + " couples its boundary and its generalized coordinates in K: " +
+                         show_number(check.coupling, 3) + " of the diagonal",
                      "Craig-Bampton components have K_bq = 0; modes with a free boundary do not");
   if (check.mass_defect < kNegative)
     diagnostics.warning("fe.superelement-mass", at,
                         who + " has a mass matrix that is not positive: lowest eigenvalue " +
-                            show_value(check.mass_defect) + " of its scaled diagonal",
+                            show_number(check.mass_defect, 3) + " of its scaled diagonal",
                         "take the mass of the run that wrote the stiffness");
   else if (s.M.size() > 0 && calc_mass_difference(check.mass.rigid_mass) > kMassDifference)
     diagnostics.warning(

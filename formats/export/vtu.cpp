@@ -21,11 +21,11 @@ struct CellType {
   std::uint8_t vtk;
   int num_nodes;
 };
-constexpr std::array cell_types{CellType{"vertex", 1, 1},   CellType{"line2", 3, 2},     CellType{"tri3", 5, 3},
-                                CellType{"quad4", 9, 4},    CellType{"tetra4", 10, 4},   CellType{"hexa8", 12, 8},
-                                CellType{"penta6", 13, 6},  CellType{"line3", 21, 3},    CellType{"tri6", 22, 6},
-                                CellType{"quad8", 23, 8},   CellType{"tetra10", 24, 10}, CellType{"hexa20", 25, 20},
-                                CellType{"penta15", 26, 15}};
+constexpr std::array cell_types{CellType{"vertex", 1, 1},    CellType{"line2", 3, 2},     CellType{"tri3", 5, 3},
+                                CellType{"quad4", 9, 4},     CellType{"tetra4", 10, 4},   CellType{"hexa8", 12, 8},
+                                CellType{"penta6", 13, 6},   CellType{"line3", 21, 3},    CellType{"tri6", 22, 6},
+                                CellType{"quad8", 23, 8},    CellType{"tetra10", 24, 10}, CellType{"hexa20", 25, 20},
+                                CellType{"penta15", 26, 15}, CellType{"pyramid5", 14, 5}};
 
 const CellType& find_cell_type(const records::BodyMesh::Block& block) {
   for (const auto& type : cell_types) {

@@ -39,9 +39,9 @@ struct Picture {
 };
 
 /// The file's text: points in the mesh's frame, point data grid_id and the arrays, cell data element_id and `cells`.
-/// Block types line2, tri3, quad4, tetra4, penta6, hexa8, vertex, and line3, tri6, quad8, tetra10, penta15, hexa20 with
-/// the midside nodes in Nastran's order. A cell with a node that is no grid (index -1) is left out. Throws InputError
-/// "export.unknown-cell" for another type of block. Layout: VTK User's Guide, "XML File Formats".
+/// Block types line2, tri3, quad4, tetra4, pyramid5, penta6, hexa8, vertex, and line3, tri6, quad8, tetra10, penta15,
+/// hexa20 with the midside nodes in Nastran's order. A cell with a node that is no grid (index -1) is left out. Throws
+/// InputError "export.unknown-cell" for another type of block. Layout: VTK User's Guide, "XML File Formats".
 std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray>& arrays, VtuEncoding encoding,
                      const std::vector<CellArray>& cells = {});
 

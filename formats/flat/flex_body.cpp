@@ -17,6 +17,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
+#include "base/input_bytes.hpp"
 #include "base/part_file.hpp"
 #include "formats/flat/detail/fields.hpp"
 #include "formats/flat/detail/seal.hpp"
@@ -407,13 +408,7 @@ std::string detail::make_seal(std::string_view bytes) {
   return seal + '\n';
 }
 
-bool is_flex_body(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  std::string head(kMagic.size(), '\0');
-  std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head == kMagic;
-}
+bool is_flex_body(const std::string& path) { return read_input_head(path, kMagic.size()) == kMagic; }
 
 std::string format_flex_body(const records::FlexBody& body) {
   Writer writer;

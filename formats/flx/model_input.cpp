@@ -175,15 +175,24 @@ class ModelInputReader {
   struct ListErrors {
     const char *range_id, *range_advice, *order_id, *order_advice;
   };
-  void check_ascending(const Listed& list, int entry, int number, int last, const ListErrors& errors) {
-    if (number < 1 || number > list.max)
-      error(errors.range_id, list.item,
-            fmt::format("entry {} is {} {}, {} 1 to {}", entry, list.noun, number, list.range, list.max),
-            errors.range_advice);
-    else if (number <= last)
-      error(errors.order_id, list.item,
-            fmt::format("entry {} is {} {} after {} {}", entry, list.noun, number, list.noun, last),
-            errors.order_advice);
+  bool read_ascending(const Listed& list, int count, const ListErrors& errors, std::vector<int>& numbers) {
+    int last = 0;
+    for (int entry = 1; entry <= count; ++entry) {
+      std::vector<int> one(1);
+      if (!in_.read(fmt::format("{}, entry {} of {}", name(list.item), entry, count), one)) return false;
+      const int number = one[0];
+      if (number < 1 || number > list.max)
+        error(errors.range_id, list.item,
+              fmt::format("entry {} is {} {}, {} 1 to {}", entry, list.noun, number, list.range, list.max),
+              errors.range_advice);
+      else if (number <= last)
+        error(errors.order_id, list.item,
+              fmt::format("entry {} is {} {} after {} {}", entry, list.noun, number, list.noun, last),
+              errors.order_advice);
+      last = number;
+      numbers.push_back(number);
+    }
+    return true;
   }
 
   bool read_modes() {
@@ -191,37 +200,22 @@ class ModelInputReader {
     if (!read_count(NumModes, model_.num_modes_given, "flx.too-many-modes", "the modes given are", count)) return false;
     if (!read_option(SelectionFlag, 1, 2, flag)) return false;
     if (flag != 1 && flag != 2) return false;
-    int last = 0;
-    for (int i = 1; i <= count; ++i) {
-      int mode = i;
-      if (flag == 2) {
-        std::vector<int> one(1);
-        if (!in_.read(fmt::format("{}, entry {} of {}", name(Selection), i, count), one)) return false;
-        mode = one[0];
-      }
-      check_ascending({Selection, "mode", "the modes given are", model_.num_modes_given}, i, mode, last,
-                      {"flx.bad-selection", "choose among the modes that the first line counts", "flx.bad-selection",
-                       "list each mode once, in ascending order"});
-      last = mode;
-      model_.modes.push_back(mode);
-    }
+    if (flag == 2)
+      return read_ascending({Selection, "mode", "the modes given are", model_.num_modes_given}, count,
+                            {"flx.bad-selection", "choose among the modes that the first line counts",
+                             "flx.bad-selection", "list each mode once, in ascending order"},
+                            model_.modes);
+    for (int mode = 1; mode <= count; ++mode) model_.modes.push_back(mode);
     return true;
   }
 
   bool read_nodes() {
-    int count = 0, last = 0;
-    if (!read_count(NumNodes, model_.num_nodes, "flx.too-many-nodes", "the nodes given are", count)) return false;
-    for (int i = 1; i <= count; ++i) {
-      std::vector<int> one(1);
-      if (!in_.read(fmt::format("{}, entry {} of {}", name(Nodes), i, count), one)) return false;
-      const int node = one[0];
-      check_ascending({Nodes, "node", "the model has", model_.num_nodes}, i, node, last,
-                      {"flx.unknown-node", "number the nodes in the order of their coordinates", "flx.node-order",
-                       "list each node once, in ascending order"});
-      last = node;
-      model_.nodes.push_back(node);
-    }
-    return true;
+    int count = 0;
+    return read_count(NumNodes, model_.num_nodes, "flx.too-many-nodes", "the nodes given are", count) &&
+           read_ascending({Nodes, "node", "the model has", model_.num_nodes}, count,
+                          {"flx.unknown-node", "number the nodes in the order of their coordinates", "flx.node-order",
+                           "list each node once, in ascending order"},
+                          model_.nodes);
   }
 
   bool read_special_nodes() {

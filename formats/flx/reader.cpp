@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/file_roles.hpp"
+#include "base/input_bytes.hpp"
 #include "formats/flx/detail/flx_reader.hpp"
 
 namespace bough::flx {
@@ -56,21 +57,6 @@ FlxFile read_flx(const std::string& path, int body_id) {
                    "correct the number after the colon");
 }
 
-namespace {
-
-/// First bytes of a regular file; empty for any other. A pipe is not read: its bytes could not be read again.
-std::string read_head(const std::string& path) {
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) return {};
-  std::string head(8, '\0');
-  std::ifstream in(path, std::ios::binary);
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(in.gcount()));
-  return head;
-}
-
-}  // namespace
-
 std::optional<FlxName> parse_flx_name(const std::string& name) {
   FlxName parsed{name, 0};
   if (const auto colon = name.rfind(':'); colon != std::string::npos) {
@@ -81,7 +67,7 @@ std::optional<FlxName> parse_flx_name(const std::string& name) {
     else
       parsed.body_id = 0;
   }
-  const auto head = read_head(parsed.path);
+  const auto head = read_input_head(parsed.path, 8);
   const auto words = detail::split_blanks(head);
   if (!words.empty() && words[0] == "FLX") return parsed;
   if (head.starts_with("\x89HDF")) return std::nullopt;

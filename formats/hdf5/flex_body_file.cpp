@@ -40,16 +40,12 @@ void write_resultants(FileWriter& file, const FlexBody& body) {
   const auto ne = body.locators.size();
   if (ne > 0 && body.load_resultant.size() == 0) return;
   BOUGH_DEMAND(body.load_moment.size() == ne);
-  file.write_matrix("/stiffening/load_resultant", ne == 0 ? MatrixXd::Zero(6, 0) : body.load_resultant,
-                    {"force x y z and moment x y z about the body origin of each locator's load: component, locator",
-                     "M L/T^2, M L^2/T^2 per load"});
+  file.write_matrix("/stiffening/load_resultant", ne == 0 ? MatrixXd::Zero(6, 0) : body.load_resultant);
   std::vector<double> moment;
   for (const auto& m : body.load_moment) append(moment, m);
   const auto n = to_dim(static_cast<std::size_t>(body.num_modes()));
   BOUGH_DEMAND(moment.size() == ne * 3 * n);
-  file.write_numbers(
-      "/stiffening/load_moment", {to_dim(ne), 3, n}, moment.data(),
-      {"what each mode adds to that moment, sum of phi_j x f: locator, axis, mode", "M L^2/(T^2 E) per load"});
+  file.write_numbers("/stiffening/load_moment", {to_dim(ne), 3, n}, moment.data());
 }
 
 void write_stiffening(FileWriter& file, const FlexBody& body) {
@@ -64,20 +60,16 @@ void write_stiffening(FileWriter& file, const FlexBody& body) {
     append(inertial, kg.size() == 0 ? MatrixXd::Zero(body.num_modes(), body.num_modes()) : kg);
   }
   const std::string path = "/stiffening/kg_inertial";
-  file.write_numbers(path, {records::kNumInertialLoads, n, n}, inertial.data(),
-                     {"K_G1: modal geometric stiffness per unit of each inertial load, in the order of `loads`; zero "
-                      "where not computed",
-                      "M L/E^2 per L/T^2, M L^2/E^2 per 1/T^2"});
+  file.write_numbers(path, {records::kNumInertialLoads, n, n}, inertial.data());
   file.write_attribute(path, "loads", get_load_names());
   file.write_attribute(path, "computed", computed);
-  file.write_integers("/stiffening/computed", computed, {"1 where kg_inertial was computed", "1"});
+  file.write_integers("/stiffening/computed", computed);
 
   std::vector<double> external;
   BOUGH_DEMAND(body.kg_external.size() == body.locators.size());
   for (const auto& kg : body.kg_external) append(external, kg);
   BOUGH_DEMAND(external.size() == body.locators.size() * n * n);
-  file.write_numbers("/stiffening/kg_external", {to_dim(body.locators.size()), n, n}, external.data(),
-                     {"K_G2: modal geometric stiffness per unit of each locator's load", "M L^2/(T^2 E^2) per load"});
+  file.write_numbers("/stiffening/kg_external", {to_dim(body.locators.size()), n, n}, external.data());
   std::vector<std::string> names;
   std::vector<int> nodes, directions;
   for (const auto& locator : body.locators) {
@@ -85,66 +77,59 @@ void write_stiffening(FileWriter& file, const FlexBody& body) {
     nodes.push_back(locator.node);
     directions.push_back(locator.direction);
   }
-  file.write_strings("/stiffening/locator/name", names, {"name of the locator", "1"});
-  file.write_integers("/stiffening/locator/node", nodes, {"node id; 0 for a load pattern", "1"});
-  file.write_integers("/stiffening/locator/direction", directions, {"1..6 in body axes; 0 for a load pattern", "1"});
+  file.write_strings("/stiffening/locator/name", names);
+  file.write_integers("/stiffening/locator/node", nodes);
+  file.write_integers("/stiffening/locator/direction", directions);
   file.write_matrix("/stiffening/external_load",
-                    body.locators.empty() ? MatrixXd::Zero(body.num_modes(), 0) : body.external_load,
-                    {"generalized force of each locator's load: mode, locator", "M L^2/(T^2 E) per load"});
+                    body.locators.empty() ? MatrixXd::Zero(body.num_modes(), 0) : body.external_load);
   write_resultants(file, body);
 }
 
 void write_mesh_shapes(FileWriter& file, const FlexBody& body) {
   if (body.mesh_phi.size() == 0) return;
   const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = body.mesh_phi;
-  file.write_floats(
-      "/mesh/phi", {to_dim(body.mesh.grid_id.size()), 3, to_dim(static_cast<std::size_t>(rows.cols()))}, rows.data(),
-      {"mode shapes of all grids, to be drawn: grid, translation x y z, mode; body axes, single precision", "L/E"});
+  file.write_floats("/mesh/phi", {to_dim(body.mesh.grid_id.size()), 3, to_dim(static_cast<std::size_t>(rows.cols()))},
+                    rows.data());
 }
 
 void write_preload(FileWriter& file, const FlexBody& body) {
   if (body.preload.empty()) return;
   file.make_group("/preload");
   file.write_attribute("/preload", "loads", body.preload);
-  file.write_vector(
-      "/preload/inertial", body.preload_A_I,
-      {"inertial load factors A_I among the preload; the solver takes their K_G1 off the modal stiffness, as "
-       "the motion brings it",
-       "L/T^2, 1/T^2"});
-  file.write_matrix("/stiffening/kg_preload", body.kg_preload,
-                    {"modal geometric stiffness of the preload, part of /modal/stiffness", "M L^2/(T^2 E^2)"});
+  file.write_vector("/preload/inertial", body.preload_A_I);
+  file.write_matrix("/stiffening/kg_preload", body.kg_preload);
 }
 
 void read_preload(FileReader& file, FlexBody& body) {
   if (!file.has("/preload")) return;
   body.preload = file.read_attribute("/preload", "loads");
-  body.preload_A_I = file.read_vector("/preload/inertial", records::kNumInertialLoads);
-  body.kg_preload = file.read_matrix("/stiffening/kg_preload", body.num_modes(), body.num_modes());
+  body.preload_A_I = file.read_vector("/preload/inertial");
+  body.kg_preload = file.read_matrix("/stiffening/kg_preload");
 }
 
 void read_stiffening(FileReader& file, FlexBody& body) {
   const long n = body.num_modes();
-  const NumberArray inertial = file.read_array("/stiffening/kg_inertial", {records::kNumInertialLoads, n, n});
-  const std::vector<int> computed = file.read_integers("/stiffening/computed", records::kNumInertialLoads);
+  const NumberArray inertial = file.read_array("/stiffening/kg_inertial");
+  const std::vector<int> computed = file.read_integers("/stiffening/computed");
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   for (std::size_t i = 0; i < records::kNumInertialLoads; ++i) {
     body.kg_inertial[i] = Eigen::Map<const RowMajor>(inertial.data.data() + static_cast<long>(i) * n * n, n, n);
     body.kg_inertial_computed[i] = computed[i] != 0;
   }
-  const std::vector<std::string> names = file.read_strings("/stiffening/locator/name", -1);
+  const std::vector<std::string> names = file.read_strings("/stiffening/locator/name");
   const auto ne = static_cast<long>(names.size());
-  const std::vector<int> nodes = file.read_integers("/stiffening/locator/node", ne);
-  const std::vector<int> directions = file.read_integers("/stiffening/locator/direction", ne);
-  const NumberArray external = file.read_array("/stiffening/kg_external", {ne, n, n});
+  const std::vector<int> nodes = file.read_integers("/stiffening/locator/node");
+  const std::vector<int> directions = file.read_integers("/stiffening/locator/direction");
+  const NumberArray external = file.read_array("/stiffening/kg_external");
   for (long e = 0; e < ne; ++e) {
     const auto k = static_cast<std::size_t>(e);
     body.locators.push_back({names[k], nodes[k], directions[k]});
     body.kg_external.emplace_back(Eigen::Map<const RowMajor>(external.data.data() + e * n * n, n, n));
   }
-  body.external_load = file.read_matrix("/stiffening/external_load", n, ne);
+  body.external_load = file.read_matrix("/stiffening/external_load");
   if (!file.has("/stiffening/load_resultant")) return;  // an older file
-  body.load_resultant = file.read_matrix("/stiffening/load_resultant", 6, ne);
-  const NumberArray moment = file.read_array("/stiffening/load_moment", {ne, 3, n});
+  body.load_resultant = file.read_matrix("/stiffening/load_resultant");
+  const NumberArray moment = file.read_array("/stiffening/load_moment");
   for (long e = 0; e < ne; ++e)
     body.load_moment.emplace_back(Eigen::Map<const RowMajor>(moment.data.data() + e * 3 * n, 3, n));
 }
@@ -166,8 +151,8 @@ void write_integrals(FileWriter& file, const std::string& path, const MassIntegr
   if (g.empty()) return;
   const auto n = to_dim(static_cast<std::size_t>(g.gamma0.cols()));
   BOUGH_DEMAND(g.gamma2.size() == n && g.gamma3.size() == n && g.gamma4.size() == n);
-  file.write_matrix(path + "/gamma0", g.gamma0.transpose(), {"sum of m phi_j: row j", "M L/E"});
-  file.write_matrix(path + "/gamma1", g.gamma1.transpose(), {"sum of J psi_j + p x m phi_j: row j", "M L^2/E"});
+  file.write_matrix(path + "/gamma0", g.gamma0.transpose());
+  file.write_matrix(path + "/gamma1", g.gamma1.transpose());
   std::vector<double> gamma2, gamma3, gamma4;
   for (std::size_t j = 0; j < n; ++j) {
     append(gamma2, g.gamma2[j].transpose());
@@ -175,10 +160,9 @@ void write_integrals(FileWriter& file, const std::string& path, const MassIntegr
     BOUGH_DEMAND(g.gamma4[j].size() == n);
     for (const auto& block : g.gamma4[j]) append(gamma4, block);
   }
-  file.write_numbers(path + "/gamma2", {n, n, 3}, gamma2.data(), {"sum of m phi_j x phi_k: j, k, axis", "M L^2/E^2"});
-  file.write_numbers(path + "/gamma3", {n, 3, 3}, gamma3.data(), {"linear change of inertia: j, 3 x 3", "M L^2/E"});
-  file.write_numbers(path + "/gamma4", {n, n, 3, 3}, gamma4.data(),
-                     {"quadratic change of inertia: j, k, 3 x 3", "M L^2/E^2"});
+  file.write_numbers(path + "/gamma2", {n, n, 3}, gamma2.data());
+  file.write_numbers(path + "/gamma3", {n, 3, 3}, gamma3.data());
+  file.write_numbers(path + "/gamma4", {n, n, 3, 3}, gamma4.data());
 }
 
 MassIntegrals read_integrals(FileReader& file, const std::string& path, long n) {
@@ -212,30 +196,25 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
                        std::string("M mass, L length, T time, E modal coordinate (M^1/2 L when the modes "
                                    "are mass-normalized); units are those of the model"));
 
-  file.write_number("/rigid/mass", body.mass, {"mass", "M"});
-  file.write_vector("/rigid/cg", body.cg, {"centre of mass from the body origin, body axes", "L"});
-  file.write_matrix("/rigid/inertia", body.inertia, {"inertia tensor about the body origin, body axes", "M L^2"});
-  file.write_integers("/nodes/id", body.node_id, {"ids of the output nodes", "1"});
-  file.write_matrix("/nodes/xyz", body.node_id.empty() ? MatrixXd::Zero(0, 3) : body.node_xyz,
-                    {"their positions, undeformed, in the body frame", "L"});
-  file.write_integers("/nodes/interface", body.interface_nodes,
-                      {"ids of the nodes with geometric stiffness for loads along x y z", "1"});
+  file.write_number("/rigid/mass", body.mass);
+  file.write_vector("/rigid/cg", body.cg);
+  file.write_matrix("/rigid/inertia", body.inertia);
+  file.write_integers("/nodes/id", body.node_id);
+  file.write_matrix("/nodes/xyz", body.node_id.empty() ? MatrixXd::Zero(0, 3) : body.node_xyz);
+  file.write_integers("/nodes/interface", body.interface_nodes);
 
-  file.write_vector("/modes/frequency_hz", body.frequency_hz, {"natural frequency, cycles per unit of time", "1/T"});
-  file.write_vector("/modes/eigenvalue", body.eigenvalue, {"eigenvalue of K phi = lambda M phi", "1/T^2"});
+  file.write_vector("/modes/frequency_hz", body.frequency_hz);
+  file.write_vector("/modes/eigenvalue", body.eigenvalue);
   write_mode_kinds(file, body.kind);
   write_mode_shapes(file, body.phi, body.num_modes());
-  file.write_matrix("/modal/mass", body.modal_mass, {"modal mass", "M L^2/E^2"});
-  file.write_matrix("/modal/stiffness", body.modal_stiffness, {"modal stiffness", "M L^2/(T^2 E^2)"});
-  file.write_matrix("/modal/damping", body.modal_damping, {"modal damping", "M L^2/(T E^2)"});
+  file.write_matrix("/modal/mass", body.modal_mass);
+  file.write_matrix("/modal/stiffness", body.modal_stiffness);
+  file.write_matrix("/modal/damping", body.modal_damping);
   if (accuracy.mass >= 0) {
-    file.write_number("/accuracy/mass", accuracy.mass, {"what modal/mass differs by from that of the shapes", "1"});
-    file.write_number("/accuracy/stiffness", accuracy.stiffness,
-                      {"what modal/stiffness differs by from that of the shapes", "1"});
+    file.write_number("/accuracy/mass", accuracy.mass);
+    file.write_number("/accuracy/stiffness", accuracy.stiffness);
   }
-  file.write_matrix(
-      "/effective_mass", body.effective_mass,
-      {"modal effective mass: mode, translations x y z and rotations x y z about the body origin", "M, M L^2"});
+  file.write_matrix("/effective_mass", body.effective_mass);
 
   file.make_group("/integrals");
   file.write_attribute("/integrals", "method", body.integrals_method);
@@ -245,15 +224,11 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
   write_integrals(file, "/integrals/exact", body.exact);
 
   if (body.F_I.size() > 0) {
-    file.write_matrix("/inertial_loads/f", body.F_I,
-                      {"F_I: nodal loads per unit of each of the twelve inertial loads; rows as /dof_map, columns as "
-                       "`loads`",
-                       "M, M L per unit of translations and rotations"});
+    file.write_matrix("/inertial_loads/f", body.F_I);
     file.write_attribute("/inertial_loads/f", "loads", get_load_names());
   }
   if (body.dof_map.size() > 0) {
-    file.write_integers("/dof_map", body.dof_map,
-                        {"a row per degree of freedom: node id, code 1..6 (0: scalar point)", "1"});
+    file.write_integers("/dof_map", body.dof_map);
   }
   write_stiffening(file, body);
   write_preload(file, body);
@@ -261,14 +236,12 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
   write_next_order(file, body.next_order);
   write_recovery(file, body);
   if (!body.strain_energy.empty()) {
-    file.write_integers("/strain_energy/id", body.strain_energy.id, {"element ids", "1"});
-    file.write_strings("/strain_energy/card", body.strain_energy.card, {"card of each", "1"});
-    file.write_matrix("/strain_energy/matrix", body.strain_energy.matrix,
-                      {"energy of an element is eta^T k eta / 2: element, upper triangle of k row by row", "F L/E^2"});
+    file.write_integers("/strain_energy/id", body.strain_energy.id);
+    file.write_strings("/strain_energy/card", body.strain_energy.card);
+    file.write_matrix("/strain_energy/matrix", body.strain_energy.matrix);
   }
   if (body.full_phi.size() > 0) {
-    file.write_matrix("/full/phi", body.full_phi,
-                      {"mode shapes at every degree of freedom: rows as /dof_map", "L/E, 1/E"});
+    file.write_matrix("/full/phi", body.full_phi);
   }
   write_mesh(file, body.mesh);
   write_mesh_shapes(file, body);
@@ -288,22 +261,22 @@ FlexBody read_flex_body(const std::string& path) {
   body.name = file.read_attribute("/", "name");
   body.is_free_free = file.read_attribute("/", "frame") == "free";
   body.mass = file.read_number("/rigid/mass");
-  body.cg = file.read_vector("/rigid/cg", 3);
-  body.inertia = file.read_matrix("/rigid/inertia", 3, 3);
-  body.node_id = file.read_integers("/nodes/id", -1);
+  body.cg = file.read_vector("/rigid/cg");
+  body.inertia = file.read_matrix("/rigid/inertia");
+  body.node_id = file.read_integers("/nodes/id");
   const long p = body.num_nodes();
-  body.node_xyz = file.read_matrix("/nodes/xyz", p, 3);
-  body.interface_nodes = file.read_integers("/nodes/interface", -1);
+  body.node_xyz = file.read_matrix("/nodes/xyz");
+  body.interface_nodes = file.read_integers("/nodes/interface");
 
-  body.eigenvalue = file.read_vector("/modes/eigenvalue", -1);
+  body.eigenvalue = file.read_vector("/modes/eigenvalue");
   const long n = body.num_modes();
-  body.frequency_hz = file.read_vector("/modes/frequency_hz", n);
-  body.kind = read_mode_kinds(file, n);
+  body.frequency_hz = file.read_vector("/modes/frequency_hz");
+  body.kind = read_mode_kinds(file);
   body.phi = read_mode_shapes(file, p, n);
-  body.modal_mass = file.read_matrix("/modal/mass", n, n);
-  body.modal_stiffness = file.read_matrix("/modal/stiffness", n, n);
-  body.modal_damping = file.read_matrix("/modal/damping", n, n);
-  body.effective_mass = file.read_matrix("/effective_mass", n, 6);
+  body.modal_mass = file.read_matrix("/modal/mass");
+  body.modal_stiffness = file.read_matrix("/modal/stiffness");
+  body.modal_damping = file.read_matrix("/modal/damping");
+  body.effective_mass = file.read_matrix("/effective_mass");
 
   read_method(file, body);
   body.lumped = read_integrals(file, "/integrals/lumped", n);
@@ -311,9 +284,9 @@ FlexBody read_flex_body(const std::string& path) {
   body.exact = read_integrals(file, "/integrals/exact", n);
 
   const bool has_loads = file.has("/inertial_loads/f"), has_full = file.has("/full/phi");
-  if (has_loads || has_full || file.has("/dof_map")) body.dof_map = file.read_integer_matrix("/dof_map", -1, 2);
-  if (has_loads) body.F_I = file.read_matrix("/inertial_loads/f", body.dof_map.rows(), records::kNumInertialLoads);
-  if (has_full) body.full_phi = file.read_matrix("/full/phi", body.dof_map.rows(), n);
+  if (has_loads || has_full || file.has("/dof_map")) body.dof_map = file.read_integer_matrix("/dof_map");
+  if (has_loads) body.F_I = file.read_matrix("/inertial_loads/f");
+  if (has_full) body.full_phi = file.read_matrix("/full/phi");
   read_stiffening(file, body);
   read_preload(file, body);
   read_third_order(file, body);
@@ -321,15 +294,15 @@ FlexBody read_flex_body(const std::string& path) {
   read_recovery(file, body);
   if (file.has("/strain_energy/matrix")) {
     auto& energy = body.strain_energy;
-    energy.id = file.read_integers("/strain_energy/id", -1);
+    energy.id = file.read_integers("/strain_energy/id");
     const auto e = static_cast<long>(energy.id.size()), n = static_cast<long>(body.num_modes());
-    energy.card = file.read_strings("/strain_energy/card", e);
+    energy.card = file.read_strings("/strain_energy/card");
     energy.matrix = file.read_matrix("/strain_energy/matrix", e, n * (n + 1) / 2);
   }
   body.mesh = read_mesh(file);
   if (file.has("/mesh/phi")) {
     const auto g = static_cast<long>(body.mesh.grid_id.size());
-    const NumberArray shapes = file.read_array("/mesh/phi", {g, 3, n});
+    const NumberArray shapes = file.read_array("/mesh/phi");
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     body.mesh_phi = Eigen::Map<const Rows>(shapes.data.data(), 3 * g, n).cast<float>();
   }

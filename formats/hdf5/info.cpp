@@ -2,7 +2,7 @@
 #include <set>
 
 #include "formats/hdf5/detail/reader.hpp"
-#include "formats/hdf5/files.hpp"
+#include "formats/hdf5/layouts.hpp"
 
 namespace bough::hdf5 {
 
@@ -125,6 +125,17 @@ FileInfo read_info(const std::string& path) {
   }
   std::set<haddr_t> groups;
   add_object(file.get(), "/", groups, info);
+  // Files of other programs may lack descriptions.
+  const auto format = info.attributes.find("format");
+  const Layout* layout = format == info.attributes.end() ? nullptr : find_layout(format->second);
+  if (layout != nullptr)
+    for (auto& object : info.objects) {
+      if (object.shape.empty() || !object.description.empty()) continue;
+      if (const auto match = find_row(*layout, object.path)) {
+        object.description = match->fill_in(match->row->description);
+        if (object.dims.empty()) object.dims = match->fill_in(match->row->dims);
+      }
+    }
   return info;
 }
 

@@ -10,11 +10,9 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 std::string name_degree(const std::string& path, int degree) { return path + "_" + std::to_string(degree); }
 
 /// Rows of elements x components as three dimensions.
-void write_rows(FileWriter& file, const std::string& path, const records::RecoveryBlock& block, const MatrixXd& rows,
-                const ArrayAttributes& meaning) {
+void write_rows(FileWriter& file, const std::string& path, const records::RecoveryBlock& block, const MatrixXd& rows) {
   const RowMajor data = rows;
-  file.write_numbers(path, {block.id.size(), block.components.size(), static_cast<hsize_t>(data.cols())}, data.data(),
-                     meaning);
+  file.write_numbers(path, {block.id.size(), block.components.size(), static_cast<hsize_t>(data.cols())}, data.data());
 }
 
 MatrixXd read_rows(FileReader& file, const std::string& path, const records::RecoveryBlock& block, long columns) {
@@ -27,42 +25,32 @@ MatrixXd read_rows(FileReader& file, const std::string& path, const records::Rec
 
 void write_recovery(FileWriter& file, const records::FlexBody& body) {
   if (body.recovery.empty()) return;
-  file.write_matrix("/recovery/inertial_load", body.inertial_load,
-                    {"generalized load of each inertial load, as kg_inertial has them: mode, load",
-                     "M L/E per L/T^2, M L^2/E per 1/T^2"});
+  file.write_matrix("/recovery/inertial_load", body.inertial_load);
   file.make_group("/recovery/elements");
   for (const auto& block : body.recovery) {
     const std::string path = "/recovery/elements/" + block.name;
-    file.write_integers(path + "/id", block.id, {"element ids", "1"});
-    file.write_strings(path + "/component", block.components,
-                       {"what the rows of each element are: forces, then stresses as stress_xx@point", "1"});
-    write_rows(file, path + "/matrix", block, block.matrix, {"per modal coordinate: element, component, mode", "F/E"});
+    file.write_integers(path + "/id", block.id);
+    file.write_strings(path + "/component", block.components);
+    write_rows(file, path + "/matrix", block, block.matrix);
     for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField && block.has_beyond(); ++k)
       write_rows(file, name_degree(path + "/matrix", k), block,
-                 block.beyond[static_cast<std::size_t>(k - ThirdOrder::kMinField)],
-                 {"per product of " + std::to_string(k) +
-                      " modal coordinates, of the large ones from degree 3 on: element, component, monomial, in "
-                      "ascending lexical order of their exponents",
-                  "F/E^" + std::to_string(k)});
-    write_rows(file, path + "/inertial", block, block.inertial,
-               {"residual of the modes in the static answer to each inertial load: element, component, load",
-                "F per L/T^2, 1/T^2"});
-    write_rows(file, path + "/external", block, block.external,
-               {"the same of each locator's load: element, component, locator", "F per load"});
-    write_rows(file, path + "/offset", block, block.offset, {"of the preload, at rest: element, component, 1", "F"});
+                 block.beyond[static_cast<std::size_t>(k - ThirdOrder::kMinField)]);
+    write_rows(file, path + "/inertial", block, block.inertial);
+    write_rows(file, path + "/external", block, block.external);
+    write_rows(file, path + "/offset", block, block.offset);
   }
 }
 
 void read_recovery(FileReader& file, records::FlexBody& body) {
   if (!file.has("/recovery/elements")) return;
   const long n = body.num_modes(), ne = static_cast<long>(body.locators.size());
-  body.inertial_load = file.read_matrix("/recovery/inertial_load", n, records::kNumInertialLoads);
+  body.inertial_load = file.read_matrix("/recovery/inertial_load");
   for (const auto& name : file.get_children("/recovery/elements")) {
     const std::string path = "/recovery/elements/" + name;
     auto& block = body.recovery.emplace_back();
     block.name = name;
-    block.id = file.read_integers(path + "/id", -1);
-    block.components = file.read_strings(path + "/component", -1);
+    block.id = file.read_integers(path + "/id");
+    block.components = file.read_strings(path + "/component");
     block.matrix = read_rows(file, path + "/matrix", block, n);
     for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k) {
       const std::string beyond = name_degree(path + "/matrix", k);

@@ -19,16 +19,15 @@ std::string get_dims(const std::string& quantity) {
 
 /// `real` and `imag`, or `value` over time; samples x columns, or as `shape` folds the columns.
 void write_samples(FileWriter& file, const std::string& group, const MatrixXd& real, const MatrixXd& imag,
-                   const Dims& shape, const std::string& what, const std::string& dims,
-                   std::vector<std::string>& written) {
-  const auto write = [&](const char* name, const MatrixXd& values, const std::string& text) {
+                   const Dims& shape, std::vector<std::string>& written) {
+  const auto write = [&](const char* name, const MatrixXd& values) {
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = values;
-    file.write_numbers(group + "/" + name, shape, rows.data(), {text, dims});
+    file.write_numbers(group + "/" + name, shape, rows.data());
     written.push_back(group + "/" + name);
   };
-  if (imag.size() == 0) return write("value", real, what + ", a row per time");
-  write("real", real, what + ", a row per frequency: real part of e^(i w t)");
-  write("imag", imag, what + ", imaginary part");
+  if (imag.size() == 0) return write("value", real);
+  write("real", real);
+  write("imag", imag);
 }
 
 void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_over_time) {
@@ -39,9 +38,7 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
   file.write_attribute(path, "label", s.label);
   file.write_attribute(path, "method", s.is_direct ? "direct" : "modal");
   const std::string scale = path + (is_over_time ? "/time" : "/frequency_hz");
-  file.write_vector(
-      scale, s.x,
-      is_over_time ? ArrayAttributes{"time of each row", "T"} : ArrayAttributes{"frequency of each row", "1/T"});
+  file.write_vector(scale, s.x);
   std::vector<std::string> written;
   const auto rows = static_cast<hsize_t>(s.x.size());
   for (const auto& curves : s.curves) {
@@ -51,40 +48,36 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
       const auto& [node, component] = curves.dofs[static_cast<std::size_t>(i)];
       dofs.row(i) << node, component;
     }
-    file.write_integers(group + "/dofs", dofs,
-                        {"a row per column: grid and component 1..6 in its displacement (CD) axes, 0 scalar", "1"});
-    write_samples(file, group, curves.real, curves.imag, {rows, static_cast<hsize_t>(dofs.rows())}, curves.quantity,
-                  get_dims(curves.quantity), written);
+    file.write_integers(group + "/dofs", dofs);
+    file.set_text("unit", get_dims(curves.quantity));
+    write_samples(file, group, curves.real, curves.imag, {rows, static_cast<hsize_t>(dofs.rows())}, written);
     file.write_attribute(group, "phase", curves.is_phase ? 1 : 0);
     file.write_attribute(group, "punch", curves.is_punched ? 1 : 0);
   }
   for (const auto& curves : s.elements) {
     const std::string group = path + (curves.is_stress ? "/stresses/" : "/elements/") + curves.card;
-    file.write_integers(group + "/id", curves.ids, {"element ids", "1"});
+    file.write_integers(group + "/id", curves.ids);
     write_samples(file, group, curves.real, curves.imag,
                   {rows, static_cast<hsize_t>(curves.ids.size()), static_cast<hsize_t>(curves.components.size())},
-                  curves.is_stress ? "stresses by element and component" : "forces by element and component",
-                  curves.is_stress ? "F/L^2" : "F, F L", written);
+                  written);
     file.write_attribute(group, "components", curves.components);
     file.write_attribute(group, "phase", curves.is_phase ? 1 : 0);
     file.write_attribute(group, "punch", curves.is_punched ? 1 : 0);
   }
   file.attach_scale(scale, written);
-  file.write_number(path + "/accuracy/solution", s.solution_error,
-                    {s.is_direct    ? "residual of the equation of motion, the worst"
-                     : is_over_time ? "what a step and two halves of it differ by, relative"
-                                    : "residual of the equation of the coordinates over its loads, worst frequency",
-                     "1"});
+  file.set_text("solution", s.is_direct ? "residual of the equation of motion, the worst"
+                            : is_over_time
+                                ? "what a step and two halves of it differ by, relative"
+                                : "residual of the equation of the coordinates over its loads, worst frequency");
+  file.write_number(path + "/accuracy/solution", s.solution_error);
   if (s.is_direct) return;
-  file.write_number(path + "/accuracy/basis", s.basis_error,
-                    {"of the orthogonality of the coordinates to M and K", "1"});
-  file.write_vector(path + "/modes/frequency_hz", s.mode_hz,
-                    {"of each coordinate: rigid-body motions (0), normal modes, residual vectors", "1/T"});
-  file.write_vector(path + "/modes/damping_ratio", s.damping_ratio, {"its share of the critical damping", "1"});
+  file.write_number(path + "/accuracy/basis", s.basis_error);
+  file.write_vector(path + "/modes/frequency_hz", s.mode_hz);
+  file.write_vector(path + "/modes/damping_ratio", s.damping_ratio);
   if (!s.damped_motion.empty()) file.write_attribute(path + "/modes", "damped_motion", s.damped_motion);
   std::vector<int> residual;
   for (const auto kind : s.kind) residual.push_back(kind == records::ModeKind::Residual);
-  file.write_integers(path + "/modes/is_residual", residual, {"1: a residual vector", "1"});
+  file.write_integers(path + "/modes/is_residual", residual);
 }
 
 std::string get_format(const records::DeckResponse& response) {

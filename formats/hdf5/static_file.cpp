@@ -9,8 +9,8 @@ namespace {
 template <class Block>
 std::string write_ids(FileWriter& file, const std::string& path, const Block& block) {
   const std::string group = path + block.card;
-  file.write_integers(group + "/id", block.id, {"element ids", "1"});
-  file.write_integers(group + "/property", block.property, {"property ids; 0: none", "1"});
+  file.write_integers(group + "/id", block.id);
+  file.write_integers(group + "/property", block.property);
   return group;
 }
 
@@ -25,10 +25,10 @@ void write_grid_forces(FileWriter& file, const std::string& path, const std::vec
     elements.push_back(f.element);
     sources.push_back(f.source);
   }
-  file.write_integers(path + "/grid", grids, {"grid that the force acts on", "1"});
-  file.write_strings(path + "/source", sources, {"card of the element, or LOAD, SPC, MPC, INERTIA", "1"});
-  file.write_integers(path + "/element", elements, {"element id; 0: none", "1"});
-  file.write_matrix(path + "/force", values, {"force x y z and moment x y z, basic axes", "F, F L"});
+  file.write_integers(path + "/grid", grids);
+  file.write_strings(path + "/source", sources);
+  file.write_integers(path + "/element", elements);
+  file.write_matrix(path + "/force", values);
 }
 
 void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
@@ -40,23 +40,16 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
   file.write_attribute(path, "temperature_set", subcase.temperature_set);
   file.write_attribute(path, "spc_set", subcase.spc_set);
   file.write_attribute(path, "mpc_set", subcase.mpc_set);
-  file.write_vector(path + "/displacement", subcase.displacement, {"displacements in the order of /dof_map", "L, 1"});
-  file.write_vector_with_zeros(path + "/load", subcase.load,
-                               {"loads on the grids, in the order of /dof_map", "F, F L"});
-  file.write_vector_with_zeros(
-      path + "/reaction", subcase.reaction,
-      {"forces of the single-point constraints on the structure, in the order of /dof_map", "F, F L"});
-  file.write_vector_with_zeros(
-      path + "/mpc_force", subcase.mpc_force,
-      {"forces of multipoint constraints and rigid elements, in the order of /dof_map", "F, F L"});
-  file.write_number(path + "/strain_energy", subcase.strain_energy, {"strain energy", "F L"});
-  file.write_number(path + "/epsilon", subcase.epsilon, {"work of the residual over the work of the loads", "1"});
+  file.write_vector(path + "/displacement", subcase.displacement);
+  file.write_vector_with_zeros(path + "/load", subcase.load);
+  file.write_vector_with_zeros(path + "/reaction", subcase.reaction);
+  file.write_vector_with_zeros(path + "/mpc_force", subcase.mpc_force);
+  file.write_number(path + "/strain_energy", subcase.strain_energy);
+  file.write_number(path + "/epsilon", subcase.epsilon);
   Eigen::Matrix<double, 3, 6> resultants;
   resultants << subcase.load_resultant.transpose(), subcase.reaction_resultant.transpose(),
       subcase.mpc_resultant.transpose();
-  file.write_matrix(
-      path + "/resultants", resultants,
-      {"of loads, reactions, multipoint forces: forces x y z and moments x y z about the origin", "F, F L"});
+  file.write_matrix(path + "/resultants", resultants);
   if (!subcase.support.empty()) {
     const auto rows = static_cast<Eigen::Index>(subcase.support.size());
     Eigen::MatrixXi dofs(rows, 2);
@@ -68,42 +61,35 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
       acceleration[i] = row.acceleration;
     }
     const std::string group = path + "/support";
-    file.write_integers(group + "/dofs", dofs, {"SUPORT: node id and component in its displacement system", "1"});
-    file.write_vector(group + "/strain_energy", energy, {"strain energy of the unit motion of each", "F L, F L"});
-    file.write_number(group + "/epsilon", subcase.support_epsilon, {"stiffness of these motions over K_rr", "1"});
+    file.write_integers(group + "/dofs", dofs);
+    file.write_vector(group + "/strain_energy", energy);
+    file.write_number(group + "/epsilon", subcase.support_epsilon);
     if (subcase.inertia.size() > 0) {
-      file.write_vector(group + "/acceleration", acceleration, {"acceleration of each", "L/T^2, 1/T^2"});
-      file.write_vector(path + "/inertia", subcase.inertia,
-                        {"forces of the mass that balance the load, in the order of /dof_map", "F, F L"});
+      file.write_vector(group + "/acceleration", acceleration);
+      file.write_vector(path + "/inertia", subcase.inertia);
     }
   }
   for (const auto& block : subcase.elements) {
     const auto group = write_ids(file, path + "/elements/", block);
-    file.write_matrix(group + "/force", block.force,
-                      {"a row per element: the forces that `components` names", "F, F L"});
-    file.write_vector(group + "/strain_energy", block.strain_energy, {"strain energy of each element", "F L"});
+    file.write_matrix(group + "/force", block.force);
+    file.write_vector(group + "/strain_energy", block.strain_energy);
     file.write_attribute(group, "components", block.components);
   }
   for (const auto& block : subcase.stresses) {
     const auto group = write_ids(file, path + "/stresses/", block);
-    file.write_matrix(group + "/stress", block.stress,
-                      {"a row per element: what `components` names, as component@point", "F/L^2, 1"});
+    file.write_matrix(group + "/stress", block.stress);
     file.write_attribute(group, "components", block.components);
   }
   for (const auto& block : subcase.strains) {
     const auto group = write_ids(file, path + "/strains/", block);
-    file.write_matrix(group + "/strain", block.stress,
-                      {"a row per element: what `components` names, as component@point; shears are angles", "1, 1/L"});
-    if (block.corner.cols() > 0)
-      file.write_matrix(group + "/corner", block.corner,
-                        {"a row per element: xx yy zz xy yz zx at each of its corners, basic axes", "1"});
+    file.write_matrix(group + "/strain", block.stress);
+    if (block.corner.cols() > 0) file.write_matrix(group + "/corner", block.corner);
     file.write_attribute(group, "components", block.components);
   }
   for (const auto& block : subcase.margins) {
     const std::string group = path + "/margins/" + block.card;
-    file.write_integers(group + "/id", block.id, {"element ids", "1"});
-    file.write_matrix(group + "/margin", block.margin,
-                      {"a row per element: limit / |stress| - 1; no number without a limit or such a stress", "1"});
+    file.write_integers(group + "/id", block.id);
+    file.write_matrix(group + "/margin", block.margin);
     file.write_attribute(group, "components", std::vector<std::string>{"tension", "compression", "shear"});
   }
   write_grid_forces(file, path + "/grid_forces", subcase.grid_forces);
@@ -111,45 +97,38 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
 
 void write_extremes(FileWriter& file, const records::CaseExtremes& block) {
   const std::string group = "/extremes/" + block.path;
-  file.write_integers(group + "/id", block.id, {"grid or element of each row", "1"});
-  file.write_matrix(group + "/min", block.low, {"least over the subcases, a column per component", block.dims});
-  file.write_matrix(group + "/max", block.high, {"largest over the subcases, a column per component", block.dims});
-  file.write_integers(group + "/min_subcase", block.low_case, {"subcase of the least", "1"});
-  file.write_integers(group + "/max_subcase", block.high_case, {"subcase of the largest", "1"});
+  file.write_integers(group + "/id", block.id);
+  file.write_matrix(group + "/min", block.low, {"", block.dims});
+  file.write_matrix(group + "/max", block.high, {"", block.dims});
+  file.write_integers(group + "/min_subcase", block.low_case);
+  file.write_integers(group + "/max_subcase", block.high_case);
   file.write_attribute(group, "components", block.components);
 }
 
-void write_sparse(FileWriter& file, const std::string& path, const records::SparseMatrix& matrix,
-                  const std::string& what, const std::string& dims) {
-  file.write_vector(
-      path + "/data",
-      Eigen::Map<const Eigen::VectorXd>(matrix.data.data(), static_cast<Eigen::Index>(matrix.data.size())),
-      {what + ": the values of compressed rows", dims});
-  file.write_integers(path + "/indices", matrix.indices, {"their columns, 0-based", "1"});
-  file.write_integers(path + "/indptr", matrix.indptr, {"where each row begins in data and indices", "1"});
-  file.write_integers(path + "/shape", std::vector<int>{matrix.num_rows, matrix.num_cols}, {"rows and columns", "1"});
+void write_sparse(FileWriter& file, const std::string& path, const records::SparseMatrix& matrix) {
+  file.write_vector(path + "/data", Eigen::Map<const Eigen::VectorXd>(matrix.data.data(),
+                                                                      static_cast<Eigen::Index>(matrix.data.size())));
+  file.write_integers(path + "/indices", matrix.indices);
+  file.write_integers(path + "/indptr", matrix.indptr);
+  file.write_integers(path + "/shape", std::vector<int>{matrix.num_rows, matrix.num_cols});
 }
-
-constexpr const char* kDofMap = "a row per dof: node id and code 1..6 (0 for a scalar point), basic axes";
 
 /// All but the subcases.
 void write_common(FileWriter& file, const records::StaticResult& whole) {
   file.write_source(whole.source);
-  file.write_integers("/dof_map", whole.dof_map, {kDofMap, "1"});
+  file.write_integers("/dof_map", whole.dof_map);
   write_mesh(file, whole.mesh);
   for (const auto& block : whole.extremes) write_extremes(file, block);
 }
 
 void write_all(FileWriter& file, const records::MatricesResult& result) {
   file.write_source(result.source);
-  file.write_integers("/dof_map", result.dof_map, {kDofMap, "1"});
+  file.write_integers("/dof_map", result.dof_map);
   write_mesh(file, result.mesh);
-  write_sparse(file, "/K", result.K, "stiffness before constraints", "F/L, F, F L");
-  write_sparse(file, "/M", result.M, "mass before constraints", "M, M L, M L^2");
-  if (result.B.num_rows > 0)
-    write_sparse(file, "/B", result.B, "viscous damping before constraints", "F T/L, F T, F T L");
-  for (const auto& [name, matrix] : result.K_G)
-    write_sparse(file, "/KG/" + name, matrix, "geometric stiffness of the static solution", "F/L, F, F L");
+  write_sparse(file, "/K", result.K);
+  write_sparse(file, "/M", result.M);
+  if (result.B.num_rows > 0) write_sparse(file, "/B", result.B);
+  for (const auto& [name, matrix] : result.K_G) write_sparse(file, "/KG/" + name, matrix);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ using records::LinearModel;
 
 /// One matrix per point, one after the other in C order.
 void write_stack(FileWriter& file, const std::string& path, const std::vector<LinearModel>& models,
-                 MatrixXd LinearModel::*part, const std::string& what) {
+                 MatrixXd LinearModel::*part) {
   const MatrixXd& first = models.front().*part;
   std::vector<double> data;
   for (const auto& model : models) {
@@ -30,7 +30,7 @@ void write_stack(FileWriter& file, const std::string& path, const std::vector<Li
     for (Index i = 0; i < m.rows(); ++i) data.insert(data.end(), m.row(i).begin(), m.row(i).end());
   }
   file.write_numbers(path, {models.size(), static_cast<hsize_t>(first.rows()), static_cast<hsize_t>(first.cols())},
-                     data.data(), {what + " of each point", "as the names' dims say"});
+                     data.data());
 }
 
 void read_stack(FileReader& file, const std::string& path, std::vector<LinearModel>& models,
@@ -49,20 +49,19 @@ void read_stack(FileReader& file, const std::string& path, std::vector<LinearMod
 
 /// Infinite values are -1 in the file.
 void write_random_outputs(FileWriter& file, const records::RandomOutputs& random) {
-  const auto write = [&](const char* name, Eigen::VectorXd values, const ArrayAttributes& attributes) {
+  const auto write = [&](const char* name, Eigen::VectorXd values) {
     for (double& value : values)
       if (!std::isfinite(value)) value = -1;
-    if (values.size() > 0) file.write_vector(std::string("/random/") + name, values, attributes);
+    if (values.size() > 0) file.write_vector(std::string("/random/") + name, values);
   };
-  const std::string dims = "the output's dims", squared = "square of the output's dims times T";
-  file.write_matrix("/random/psd", random.psd, {"one-sided spectral density, frequency x output", squared});
-  file.write_matrix("/random/cumulative_rms", random.cumulative_rms, {"RMS from the first frequency to each", dims});
-  write("rms", random.rms, {"over the frequencies, by straight lines of the density", dims});
-  write("zero_crossings_hz", random.crossing_hz, {"N0, zero crossings with positive slope, likewise", "1/T"});
-  write("band_rms", random.band_rms, {"by integration from the first to the last frequency", dims});
-  write("band_zero_crossings_hz", random.band_crossing_hz, {"N0 by integration over the band", "1/T"});
-  write("total_rms", random.total_rms, {"white inputs, all frequencies, by Lyapunov's equation; -1: no bound", dims});
-  write("total_zero_crossings_hz", random.total_crossing_hz, {"N0 of white inputs; -1: no bound", "1/T"});
+  file.write_matrix("/random/psd", random.psd);
+  file.write_matrix("/random/cumulative_rms", random.cumulative_rms);
+  write("rms", random.rms);
+  write("zero_crossings_hz", random.crossing_hz);
+  write("band_rms", random.band_rms);
+  write("band_zero_crossings_hz", random.band_crossing_hz);
+  write("total_rms", random.total_rms);
+  write("total_zero_crossings_hz", random.total_crossing_hz);
 }
 
 records::RandomOutputs read_random_outputs(FileReader& file, const records::FrequencyResponse& response) {
@@ -95,29 +94,27 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   FileWriter file(path, kSweepFormat, kVersion);
   file.write_source(sweep.source);
   write_unit_labels(file, sweep.models.front().units);
-  file.write_strings("/parameter/name", {sweep.parameter}, {"of the system file, or time", "1"});
-  file.write_vector("/parameter/value", sweep.value, {"one a point", "as the parameter's"});
+  file.write_strings("/parameter/name", {sweep.parameter});
+  file.write_vector("/parameter/value", sweep.value);
   if (!sweep.grid_name.empty()) {
     const auto axes = sweep.grid_name.size();
     MatrixXd points(sweep.value.size(), static_cast<Index>(axes));
     for (Index k = 0; k < points.rows(); ++k)
       for (std::size_t i = 0; i < axes; ++i) points(k, static_cast<Index>(i)) = records::get_grid_value(sweep, k, i);
-    file.write_strings("/grid/name", sweep.grid_name, {"parameters of the system file, the last one fastest", "1"});
-    for (std::size_t i = 0; i < axes; ++i)
-      file.write_vector("/grid/axis" + std::to_string(i + 1), sweep.grid_value[i],
-                        {"values of parameter " + std::to_string(i + 1), "as the parameter's"});
-    file.write_matrix("/grid/points", points, {"point, parameter", "as the parameters'"});
+    file.write_strings("/grid/name", sweep.grid_name);
+    for (std::size_t i = 0; i < axes; ++i) file.write_vector("/grid/axis" + std::to_string(i + 1), sweep.grid_value[i]);
+    file.write_matrix("/grid/points", points);
   }
   const auto& first = sweep.models.front();
-  write_signals(file, "/states", first.states, "states: displacements of the DOFs, then their rates");
-  write_signals(file, "/inputs", first.inputs, "inputs");
-  write_signals(file, "/outputs", first.outputs, "outputs");
+  write_signals(file, "/states", first.states);
+  write_signals(file, "/inputs", first.inputs);
+  write_signals(file, "/outputs", first.outputs);
   const bool is_sampled = first.sample_time > 0;
-  const std::string law = is_sampled ? "x+ = A x + B u" : "x_dot = A x + B u";
-  write_stack(file, "/A", sweep.models, &LinearModel::A, law);
-  write_stack(file, "/B", sweep.models, &LinearModel::B, law);
-  write_stack(file, "/C", sweep.models, &LinearModel::C, "y = C x + D u");
-  write_stack(file, "/D", sweep.models, &LinearModel::D, "y = C x + D u");
+  file.set_text("equation", is_sampled ? "x+ = A x + B u" : "x_dot = A x + B u");
+  write_stack(file, "/A", sweep.models, &LinearModel::A);
+  write_stack(file, "/B", sweep.models, &LinearModel::B);
+  write_stack(file, "/C", sweep.models, &LinearModel::C);
+  write_stack(file, "/D", sweep.models, &LinearModel::D);
   const auto np = static_cast<Index>(sweep.models.size());
   MatrixXd q(np, first.q.size()), u(np, first.u.size());
   Eigen::VectorXd time(np), residual(np), sample_time(np);
@@ -129,19 +126,18 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
     residual[k] = model.residual;
     sample_time[k] = model.sample_time;
   }
-  if (is_sampled)
-    file.write_vector("/sample_time", sample_time, {"x+ = A x + B u, y = C x + D u; poles are ln z over it", "T"});
-  file.write_vector("/operating_point/time", time, {"time of each point", "T"});
-  file.write_matrix("/operating_point/q", q, {"point, position (quaternions w, x, y, z)", "1 or L"});
-  file.write_matrix("/operating_point/u", u, {"point, speed", "1/T or L/T"});
-  file.write_vector("/operating_point/residual", residual, {"norm of u_dot", "1/T^2 or L/T^2"});
-  write_signals(file, "/operating_point/positions", first.q_names, "columns of q");
-  write_signals(file, "/operating_point/speeds", first.u_names, "columns of u");
-  file.write_matrix("/poles/real", sweep.real, {"point, branch: a column is one motion all along", "1/T"});
-  file.write_matrix("/poles/imag", sweep.imag, {"point, branch", "1/T"});
-  file.write_matrix("/poles/frequency_hz", sweep.frequency_hz, {"|pole| / 2 pi", "1/T"});
-  file.write_matrix("/poles/damping", sweep.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
-  file.write_matrix("/poles/correlation", sweep.correlation, {"with the motion at the point before", "1"});
+  if (is_sampled) file.write_vector("/sample_time", sample_time);
+  file.write_vector("/operating_point/time", time);
+  file.write_matrix("/operating_point/q", q);
+  file.write_matrix("/operating_point/u", u);
+  file.write_vector("/operating_point/residual", residual);
+  write_signals(file, "/operating_point/positions", first.q_names);
+  write_signals(file, "/operating_point/speeds", first.u_names);
+  file.write_matrix("/poles/real", sweep.real);
+  file.write_matrix("/poles/imag", sweep.imag);
+  file.write_matrix("/poles/frequency_hz", sweep.frequency_hz);
+  file.write_matrix("/poles/damping", sweep.damping);
+  file.write_matrix("/poles/correlation", sweep.correlation);
   std::vector<std::string> over_parameter{"/A",
                                           "/B",
                                           "/C",
@@ -156,15 +152,14 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
                                           "/poles/damping",
                                           "/poles/correlation"};
   if (sweep.whirl.size() > 0) {
-    file.write_matrix("/poles/whirl", sweep.whirl, {"1: forward circle, -1: backward circle, 0: line", "1"});
+    file.write_matrix("/poles/whirl", sweep.whirl);
     over_parameter.emplace_back("/poles/whirl");
   }
   file.attach_scale("/parameter/value", over_parameter);
   std::vector<std::string> start, end;
   if (!sweep.mode.empty()) start = sweep.mode.front(), end = sweep.mode.back();
-  file.write_strings("/poles/mode_first", start,
-                     {"branch: the coordinate that takes part most at the first point", "1"});
-  file.write_strings("/poles/mode_last", end, {"branch: at the last point", "1"});
+  file.write_strings("/poles/mode_first", start);
+  file.write_strings("/poles/mode_last", end);
   file.commit();
 }
 
@@ -219,9 +214,9 @@ void write_response(const records::FrequencyResponse& response, const records::P
   FileWriter file(path, kResponseFormat, kVersion);
   file.write_source(response.source);
   write_unit_labels(file, response.units);
-  write_signals(file, "/inputs", response.inputs, "inputs");
-  write_signals(file, "/outputs", response.outputs, "outputs");
-  file.write_vector("/frequency_hz", response.frequency_hz, {"frequencies", "1/T"});
+  write_signals(file, "/inputs", response.inputs);
+  write_signals(file, "/outputs", response.outputs);
+  file.write_vector("/frequency_hz", response.frequency_hz);
   std::vector<double> real, imag;
   for (const auto& value : response.value)
     for (Index i = 0; i < value.rows(); ++i)
@@ -231,14 +226,11 @@ void write_response(const records::FrequencyResponse& response, const records::P
       }
   const Dims shape{response.value.size(), static_cast<hsize_t>(response.outputs.size()),
                    static_cast<hsize_t>(response.inputs.size())};
-  file.write_numbers("/real", shape, real.data(),
-                     {"C (jw - A)^-1 B + D: frequency, output, input; real part", "as the names' dims say"});
-  file.write_numbers("/imag", shape, imag.data(), {"likewise, imaginary part", "as the names' dims say"});
-  file.write_matrix("/singular_values", response.singular_values, {"frequency, descending", "as the names' dims say"});
-  file.write_number("/peak/value", peak.is_finite ? peak.value : -1,
-                    {"largest singular value of all frequencies; -1: it is infinite", "as the names' dims say"});
-  file.write_number("/peak/frequency_hz", std::isfinite(peak.frequency_hz) ? peak.frequency_hz : -1,
-                    {"where; -1: beyond all poles", "1/T"});
+  file.write_numbers("/real", shape, real.data());
+  file.write_numbers("/imag", shape, imag.data());
+  file.write_matrix("/singular_values", response.singular_values);
+  file.write_number("/peak/value", peak.is_finite ? peak.value : -1);
+  file.write_number("/peak/frequency_hz", std::isfinite(peak.frequency_hz) ? peak.frequency_hz : -1);
   if (margins) {
     const auto write = [&](const std::string& group, const std::vector<records::Crossing>& crossings, bool is_phase) {
       Eigen::VectorXd frequency(static_cast<Index>(crossings.size())), margin = frequency, delay = frequency;
@@ -246,16 +238,15 @@ void write_response(const records::FrequencyResponse& response, const records::P
         const auto& c = crossings[static_cast<std::size_t>(k)];
         frequency[k] = c.frequency_hz, margin[k] = c.margin, delay[k] = c.delay;
       }
-      file.write_vector(group + "/frequency_hz", frequency, {"of the crossing", "1/T"});
-      file.write_vector(group + "/margin", margin,
-                        {is_phase ? "lag that brings L to -1, rad" : "factor that brings L to -1", "1"});
-      if (is_phase) file.write_vector(group + "/delay", delay, {"delay that does", "T"});
+      file.write_vector(group + "/frequency_hz", frequency);
+      file.write_vector(group + "/margin", margin);
+      if (is_phase) file.write_vector(group + "/delay", delay);
     };
     write("/margins/gain", margins->gain, false);
     write("/margins/phase", margins->phase, true);
-    file.write_number("/margins/distance", margins->distance, {"least |1 + L|", "1"});
-    file.write_number("/margins/distance_hz", margins->distance_hz, {"where", "1/T"});
-    file.write_number("/margins/largest_real", margins->largest_real, {"of the poles with the loop closed", "1/T"});
+    file.write_number("/margins/distance", margins->distance);
+    file.write_number("/margins/distance_hz", margins->distance_hz);
+    file.write_number("/margins/largest_real", margins->largest_real);
   }
   std::vector<std::string> over_frequency{"/real", "/imag", "/singular_values"};
   if (random) {
@@ -318,10 +309,9 @@ ResponseOfModel read_model_response(const std::string& path) {
 void write_budget(const records::PointingBudget& budget, const std::string& path) {
   FileWriter file(path, kBudgetFormat, kVersion);
   file.write_source(budget.source);
-  write_signals(file, "/outputs", budget.outputs, "outputs");
-  file.write_strings("/sources/name", budget.sources, {"names of the sources", "1"});
-  file.write_vector("/band_hz", Eigen::Vector2d(budget.from_hz, budget.to_hz),
-                    {"ends of the spectral densities; 0: there is none", "1/T"});
+  write_signals(file, "/outputs", budget.outputs);
+  file.write_strings("/sources/name", budget.sources);
+  file.write_vector("/band_hz", Eigen::Vector2d(budget.from_hz, budget.to_hz));
   const auto nt = static_cast<Index>(budget.tables.size()), ns = static_cast<Index>(budget.sources.size());
   const Index ny = budget.outputs.size();
   std::vector<std::string> weighting;
@@ -338,31 +328,30 @@ void write_budget(const records::PointingBudget& budget, const std::string& path
       speed.insert(speed.end(), table.speed.row(s).begin(), table.speed.row(s).end());
     }
   }
-  const std::string dims = "the output's dims";
   const Dims shape{static_cast<hsize_t>(nt), static_cast<hsize_t>(ns), static_cast<hsize_t>(ny)};
-  file.write_strings("/tables/weighting", weighting, {"total, jitter, smear, residual, mean, drift", "1"});
-  file.write_vector("/tables/exposure", exposure, {"window; 0: total", "T"});
-  file.write_numbers("/tables/rms", shape, rms.data(), {"table, source, output; wheels at their worst speed", dims});
-  file.write_numbers("/tables/speed", shape, speed.data(), {"that speed; NaN: the source is no wheel", "1/T"});
-  file.write_matrix("/tables/total", total, {"root of the sum of squares: table, output", dims});
+  file.write_strings("/tables/weighting", weighting);
+  file.write_vector("/tables/exposure", exposure);
+  file.write_numbers("/tables/rms", shape, rms.data());
+  file.write_numbers("/tables/speed", shape, speed.data());
+  file.write_matrix("/tables/total", total);
   for (Index s = 0; s < ns; ++s) {
     const auto number = static_cast<std::size_t>(s);
     const std::string of = "/" + std::to_string(s + 1);
     const auto& curve = budget.curves[number];
     if (curve.rms.rows() > 0) {
-      file.write_matrix("/curves" + of + "/frequency_hz", curve.frequency_hz, {"of each output", "1/T"});
-      file.write_matrix("/curves" + of + "/rms", curve.rms, {"total RMS up to that frequency", dims});
+      file.write_matrix("/curves" + of + "/frequency_hz", curve.frequency_hz);
+      file.write_matrix("/curves" + of + "/rms", curve.rms);
     }
     const auto& speeds = budget.speed[number];
     if (speeds.size() == 0) continue;
-    file.write_vector("/wheels" + of + "/speed", speeds, {"speeds of the wheel", "1/T"});
+    file.write_vector("/wheels" + of + "/speed", speeds);
     std::vector<double> over_speed;
     for (const auto& table : budget.tables)
       for (const auto& row : table.over_speed[number].rowwise())
         over_speed.insert(over_speed.end(), row.begin(), row.end());
     file.write_numbers("/wheels" + of + "/rms",
                        {static_cast<hsize_t>(nt), static_cast<hsize_t>(speeds.size()), static_cast<hsize_t>(ny)},
-                       over_speed.data(), {"table, speed, output", dims});
+                       over_speed.data());
   }
   file.commit();
 }

@@ -9,8 +9,6 @@ using Tables = ThirdOrder::Tables;
 
 std::string name_degree(const std::string& path, int degree) { return path + "_" + std::to_string(degree); }
 
-const std::string kPacked = "monomials in ascending lexical order of their exponents";
-
 }  // namespace
 
 void write_third_order(FileWriter& file, const records::FlexBody& body) {
@@ -20,19 +18,13 @@ void write_third_order(FileWriter& file, const records::FlexBody& body) {
   for (const int j : third.large) numbers.push_back(j + 1);
   // One of both: programs that do not know directions find that the modes are missing.
   if (third.directions.size() > 0)
-    file.write_matrix("/third_order/directions", third.directions,
-                      {"large amplitudes by those of all modes: direction, mode", "1"});
+    file.write_matrix("/third_order/directions", third.directions);
   else
-    file.write_integers("/third_order/large", numbers, {"the large modes, from 1", "1"});
+    file.write_integers("/third_order/large", numbers);
   for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)
     file.write_vector(name_degree("/third_order/energy", k),
-                      third.energy[static_cast<std::size_t>(k - ThirdOrder::kMinEnergy)],
-                      {"strain energy of degree " + std::to_string(k) + " in the large modes: " + kPacked,
-                       "M L^2/(T^2 E^" + std::to_string(k) + ")"});
-  file.write_matrix("/third_order/energy_small", third.energy_small,
-                    {"strain energy of two large modes and another one: monomials of the large modes of degree 2, the "
-                     "other modes",
-                     "M L^2/(T^2 E^3)"});
+                      third.energy[static_cast<std::size_t>(k - ThirdOrder::kMinEnergy)]);
+  file.write_matrix("/third_order/energy_small", third.energy_small);
   std::vector<double> fields, nodes;
   const auto append = [](std::vector<double>& data, const MatrixXd& m) {
     for (Eigen::Index i = 0; i < m.rows(); ++i)
@@ -40,29 +32,17 @@ void write_third_order(FileWriter& file, const records::FlexBody& body) {
   };
   for (const auto& field : third.fields) append(fields, field);
   const auto m = static_cast<hsize_t>(third.num_fields());
-  file.write_numbers("/third_order/fields", {third.fields.size(), 6, m}, fields.data(),
-                     {"displacement fields beyond the modes, orthonormal under the mass: output node, translations and "
-                      "rotations, field",
-                      "M^-1/2, M^-1/2/L"});
+  file.write_numbers("/third_order/fields", {third.fields.size(), 6, m}, fields.data());
   for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k) {
     const auto at = static_cast<std::size_t>(k - ThirdOrder::kMinField);
-    const std::string degree = std::to_string(k), of = k == 2 ? "all modes" : "the large modes";
-    file.write_matrix(
-        name_degree("/third_order/amplitudes", k), third.amplitudes[at],
-        {"amplitudes of the fields, degree " + degree + " in " + of + ": monomials, fields", "M^1/2 L/E^" + degree});
+    file.write_matrix(name_degree("/third_order/amplitudes", k), third.amplitudes[at]);
     nodes.clear();
     for (const auto& tables : third.node) append(nodes, tables[at]);
     file.write_numbers(name_degree("/third_order/node", k),
-                       {third.node.size(), static_cast<hsize_t>(third.amplitudes[at].rows()), 6}, nodes.data(),
-                       {"displacements of the interface nodes, degree " + degree + " in " + of +
-                            ": node, monomials, translations and rotation vector",
-                        "L/E^" + degree + ", 1/E^" + degree});
-    file.write_matrix(name_degree("/third_order/load", k), third.load[at],
-                      {"work of each locator's load, degree " + degree + " in " + of + ": monomials, locator",
-                       "M L^2/(T^2 E^" + degree + ") per load"});
+                       {third.node.size(), static_cast<hsize_t>(third.amplitudes[at].rows()), 6}, nodes.data());
+    file.write_matrix(name_degree("/third_order/load", k), third.load[at]);
   }
-  if (third.coupling.size() > 0)
-    file.write_matrix("/third_order/coupling", third.coupling, {"mass between modes and fields", "M L^2/E^2"});
+  if (third.coupling.size() > 0) file.write_matrix("/third_order/coupling", third.coupling);
   write_integrals(file, "/third_order/integrals", third.integrals);
 }
 
@@ -71,10 +51,10 @@ void read_third_order(FileReader& file, records::FlexBody& body) {
   ThirdOrder& third = body.third_order;
   const int n = body.num_modes();
   if (file.has("/third_order/directions")) {
-    third.directions = file.read_matrix("/third_order/directions", -1, n);
+    third.directions = file.read_matrix("/third_order/directions");
     third.count_directions();
   } else {
-    third.large = file.read_integers("/third_order/large", -1);
+    third.large = file.read_integers("/third_order/large");
     for (int& j : third.large) --j;
   }
   const int N = third.num_large();
@@ -84,7 +64,7 @@ void read_third_order(FileReader& file, records::FlexBody& body) {
         file.read_vector(name_degree("/third_order/energy", k), records::count_monomials(N, k));
   third.energy_small = file.read_matrix("/third_order/energy_small", records::count_monomials(N, 2), n - N);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const NumberArray fields = file.read_array("/third_order/fields", {body.num_nodes(), 6, -1});
+  const NumberArray fields = file.read_array("/third_order/fields");
   const long m = fields.shape.size() == 3 ? static_cast<long>(fields.shape[2]) : 0;
   for (int k = 0; k < body.num_nodes(); ++k)
     third.fields.emplace_back(Eigen::Map<const RowMajor>(fields.data.data() + k * 6 * m, 6, m));
@@ -100,7 +80,7 @@ void read_third_order(FileReader& file, records::FlexBody& body) {
       third.node[static_cast<std::size_t>(i)][at] =
           Eigen::Map<const RowMajor>(nodes.data.data() + i * rows * 6, rows, 6);
   }
-  if (file.has("/third_order/coupling")) third.coupling = file.read_matrix("/third_order/coupling", n, m);
+  if (file.has("/third_order/coupling")) third.coupling = file.read_matrix("/third_order/coupling");
   third.integrals = read_integrals(file, "/third_order/integrals", n + m);
 }
 
@@ -108,17 +88,15 @@ void write_next_order(FileWriter& file, const records::NextOrder& next) {
   if (next.empty()) return;
   std::vector<int> numbers;
   for (const int j : next.modes) numbers.push_back(j + 1);
-  file.write_integers("/next_order/modes", numbers, {"soft modes, from 1", "1"});
-  file.write_vector("/next_order/energy_3", next.cubic,
-                    {"strain energy of degree 3 in the soft modes: " + kPacked, "M L^2/(T^2 E^3)"});
-  file.write_vector("/next_order/energy_4", next.quartic,
-                    {"strain energy of degree 4 in the soft modes: " + kPacked, "M L^2/(T^2 E^4)"});
+  file.write_integers("/next_order/modes", numbers);
+  file.write_vector("/next_order/energy_3", next.cubic);
+  file.write_vector("/next_order/energy_4", next.quartic);
 }
 
 records::NextOrder read_next_order(FileReader& file, int num_modes) {
   records::NextOrder next;
   if (!file.has("/next_order")) return next;
-  next.modes = file.read_integers("/next_order/modes", -1);
+  next.modes = file.read_integers("/next_order/modes");
   for (int& j : next.modes) --j;
   const auto N = static_cast<int>(next.modes.size());
   if (!records::are_modes(next.modes, num_modes) || N > records::kMaxLargeModes) return next;  // a body fault

@@ -121,7 +121,9 @@ void add_force_pages(const ListedStep& step, const ListedElements& block, Pages&
              "TORQUE         TORQUE"});
       return add_beams(block, pages);
     case 102:
-      begin("F O R C E S   I N   B U S H   E L E M E N T S        ( C B U S H )",
+    case 126:
+      begin(block.type == 102 ? "F O R C E S   I N   B U S H   E L E M E N T S        ( C B U S H )"
+                              : "F O R C E S   I N   F A S T E N E R   E L E M E N T S   ( C F A S T )",
             {"                  ELEMENT-ID        FORCE-X       FORCE-Y       FORCE-Z      MOMENT-X      MOMENT-Y      "
              "MOMENT-Z"});
       return add_rows(block, " ", pages);

@@ -176,7 +176,7 @@ void add_beam_stresses(const records::ListedElements& block, std::size_t k, Word
   }
 }
 
-bool is_solid(int type) { return type == 39 || type == 67 || type == 68; }
+bool is_solid(int type) { return type == 39 || type == 67 || type == 68 || type == 255; }
 bool is_layered(int type) { return type == 95 || type == 97; }
 
 /// A solid is one entry: its head, then the centre and each corner.

@@ -141,7 +141,7 @@ void add_complex_stresses(const ListedElements& block, Pages& pages) {
       }
     } else if (block.type == 95 || block.type == 97) {
       add_two_lines(fmt::format("0{:>17}{:>16} ", block.id[k], block.point[k]), block, k, 0, 5, text);
-    } else if (block.type == 39 || block.type == 67 || block.type == 68) {
+    } else if (block.type == 39 || block.type == 67 || block.type == 68 || block.type == 255) {
       const bool is_centre = block.point[k] == 0;
       if (is_centre) text = fmt::format("0{:>10}", block.id[k]);
       add_two_lines(fmt::format("{:12}{:>9}", "", is_centre ? "CENTER" : fmt::to_string(block.point[k])), block, k, 0,
@@ -174,6 +174,8 @@ std::string name_stresses(const ListedElements& block) {
       return "S T R E S S E S   I N   H E X A H E D R O N   S O L I D   E L E M E N T S   ( H E X A )";
     case 68:
       return "S T R E S S E S   I N   P E N T A H E D R O N   S O L I D   E L E M E N T S   ( P E N T A )";
+    case 255:
+      return "S T R E S S E S   I N   P Y R A M I D   S O L I D   E L E M E N T S   ( P Y R A M )";
     case 39:
       return "S T R E S S E S   I N   T E T R A H E D R O N   S O L I D   E L E M E N T S   ( C T E T R A )";
     default:
@@ -206,6 +208,7 @@ std::vector<std::string> name_complex_columns(int type) {
     case 39:
     case 67:
     case 68:
+    case 255:
       return {"                CORNER       ---------------------CENTER AND CORNER POINT STRESSES---------------------",
               "  ELEMENT-ID    GRID-ID     NORMAL-X       NORMAL-Y       NORMAL-Z       SHEAR-XY       SHEAR-YZ       "
               "SHEAR-ZX"};
@@ -257,6 +260,7 @@ void add_stress_pages(const ListedStep& step, const ListedElements& block, Pages
     case 39:
     case 67:
     case 68:
+    case 255:
       begin(
           {"0                CORNER        ------CENTER AND CORNER POINT STRESSES---------       DIR.  COSINES       "
            "MEAN",

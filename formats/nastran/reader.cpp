@@ -8,6 +8,7 @@
 #include "formats/nastran/detail/packing.hpp"
 #include "formats/nastran/detail/super_sections.hpp"
 #include "formats/nastran/reader.hpp"
+#include "formats/nastran/whole_deck.hpp"
 
 namespace bough::nastran {
 namespace {
@@ -32,7 +33,7 @@ void fill_deck(const detail::Source& source, const ReadOptions& options, records
   detail::read_assigned_files(source, deck);
   detail::read_sections(bulk, component_cases, options, deck, diagnostics);
   detail::add_load_columns(columns, deck, diagnostics);
-  detail::report_params(deck, options.ignore_cards, diagnostics, dynamics != nullptr);
+  detail::report_params(deck, options.ignore_cards, diagnostics, dynamics != nullptr && !control.is_whole);
 }
 
 records::Deck make_deck(const detail::Source& source, const ReadOptions& options, Diagnostics& diagnostics,
@@ -45,6 +46,20 @@ records::DynamicDeck make_dynamic_deck(const detail::Source& source, const ReadO
                                        Diagnostics& diagnostics) {
   records::DynamicDeck deck;
   fill_deck(source, options, deck, {.dynamics = &deck}, diagnostics);
+  return deck;
+}
+
+WholeDeck make_whole_deck(const detail::Source& source, ReadOptions options, Diagnostics& diagnostics) {
+  WholeDeck deck;
+  options.is_response = false;
+  options.is_complex = true;
+  fill_deck(source, options, deck,
+            {.dynamics = &deck,
+             .combinations = &deck.combinations,
+             .combination_diagnostics = &diagnostics,
+             .request_options = &deck.request_options,
+             .is_whole = true},
+            diagnostics);
   return deck;
 }
 
@@ -91,6 +106,14 @@ records::DynamicDeck read_dynamic_deck_text(std::string_view text, const std::st
 }
 records::DynamicDeck read_packed_dynamic_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics) {
   return make_dynamic_deck(detail::unpack(std::move(bytes), diagnostics), options, diagnostics);
+}
+
+WholeDeck read_whole_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics) {
+  return make_whole_deck(detail::read_source(path, diagnostics), options, diagnostics);
+}
+WholeDeck read_whole_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
+                               Diagnostics& diagnostics) {
+  return make_whole_deck(detail::read_source_text(text, name, diagnostics), options, diagnostics);
 }
 
 records::Deck read_combined_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics) {

@@ -1,9 +1,7 @@
 #include "formats/nastran/superelement_writer.hpp"
 
-#include <algorithm>
-#include <set>
-
 #include "formats/nastran/detail/card_sink.hpp"
+#include "formats/nastran/detail/recovery_table.hpp"
 
 namespace bough::nastran {
 namespace {
@@ -47,41 +45,10 @@ void write_pairs(const char* name, const ExternalComponent& c, std::size_t per_c
   }
 }
 
-/// Name of the table, its code and what Nastran calls the result.
-struct TableKind {
-  const char* matrix;
-  const char* name;
-  int code;
-  const char* result;
-  int type;
-};
-constexpr TableKind kKinds[] = {
-    {"MUG1", "TUG1", 7, "PHIP", 7}, {"MEF1", "TEF1", 1004, "TEF", 4}, {"MES1", "TES1", 1005, "TES", 5}};
-
-/// DTI: record 0 the sizes, 1 the columns, 2 the rows of each item, 3 the elements.
+/// The table "TUG1" of the matrix "MUG1"; the others of loads have none.
 void write_table(const records::RecoveryTable& table, CardSink& sink) {
-  const auto* const kind = std::find_if(std::begin(kKinds), std::end(kKinds),
-                                        [&](const TableKind& one) { return table.name == one.matrix; });
-  if (kind == std::end(kKinds)) return;
-  const int rows = static_cast<int>(table.rows.rows()), columns = static_cast<int>(table.rows.cols());
-  CardFields sizes("DTI");
-  sizes.add_word(kind->name).add(0).add(rows).add(columns).add(32767).add(0).add(kind->code).add(0);
-  sizes.add_word(kind->result).add_blank().add(kind->type).add_blank(2).add_word("REAL").add(1).add_word("ENDREC");
-  sink.put(sizes);
-  CardFields list("DTI");
-  list.add_word(kind->name).add(1);
-  for (int k = 1; k <= columns; ++k) list.add(k).add(0.0);
-  sink.put(list.add_word("ENDREC"));
-  CardFields items("DTI");
-  items.add_word(kind->name).add(2).end_line();
-  for (int twice = 0; twice < 2; ++twice) items.add_word("TYPE").add_word("ID").add_word("COMP").add_word("ROW");
-  for (const auto& item : table.items) items.add(item.type).add(item.id).add(item.num_rows).add(item.first_row + 1);
-  sink.put(items.add_word("ENDREC"));
-  if (kind->name == std::string_view("TUG1")) return;
-  CardFields elements("DTI");
-  elements.add_word(kind->name).add(3).end_line();
-  for (const auto& item : table.items) elements.add(item.type).add(item.id).end_line();
-  sink.put(elements.add_word("ENDREC"));
+  if (table.name != "MUG1" && table.name != "MEF1" && table.name != "MES1") return;
+  detail::write_recovery_rows("T" + table.name.substr(1), table.items, static_cast<int>(table.rows.cols()), sink);
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ struct Mat1 {
   std::optional<double> tref;     ///< empty: TEMPERATURE(INITIAL), or zero
   double st = 0, sc = 0, ss = 0;  ///< stress limits: tension, compression, shear; 0: none
   CardLocation at;
+  char filled = 0;  ///< E, G or N (nu): the one that was missing on the card
 };
 
 /// Four times zero: where a section gives no points for stress (Eigen sets nothing by itself).
@@ -372,6 +373,8 @@ struct Subcase {
   CardLocation preload_at;
   int temperature = 0;          ///< TEMPERATURE(LOAD) or (BOTH)
   int initial_temperature = 0;  ///< TEMPERATURE(INITIAL)
+  int material_temperature =
+      0;  ///< TEMPERATURE(MATERIAL), (BOTH) or without parentheses: where materials are evaluated
   int suport1 = 0, nsm = 0;
   int deform = 0;                                                ///< DEFORM, which is not read: an error where it loads
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)

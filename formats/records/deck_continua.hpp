@@ -119,7 +119,7 @@ struct Psolid {
 };
 struct SolidElement {
   int id = 0, pid = 0;
-  std::string card;  ///< CHEXA, CPENTA, CTETRA, CIHEX3
+  std::string card;  ///< CHEXA, CPENTA, CTETRA, CPYRAM, CIHEX3
   std::vector<int> corners;
   std::vector<int> midsides;  ///< one per edge, 0 = absent; empty = none; CIHEX3: two, by the edge's first corner first
   CardLocation at;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file A deck with what drives it: loads over frequency and time, tables, damping, and what its case control asks of
 /// a response. Apart from deck.hpp, which most of Bough is compiled with and which needs none of it.
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include "formats/records/deck.hpp"
 #include "formats/records/deck_rotors.hpp"
+#include "formats/records/function_table.hpp"
 
 namespace bough::records {
 
@@ -54,14 +56,13 @@ struct InitialMotion {  ///< TIC
   CardLocation at;
 };
 
-/// TABLED1 to TABLED4.
-struct DynamicTable {
-  int id = 0, kind = 1;
-  bool is_log_x = false, is_log_y = false;        ///< TABLED1
-  bool is_flat = false;                           ///< TABLED1: beyond its ends it keeps its end values
-  double x1 = 0, x2 = 1, x3 = 0, x4 = 0;          ///< TABLED2 (x1), TABLED3 (x1, x2), TABLED4
-  std::vector<std::pair<double, double>> points;  ///< ascending x; equal ones are a jump
-  std::vector<double> coefficients;               ///< TABLED4
+using DynamicTable = FunctionTable;
+
+/// PELAST, PDAMPT, PBUSHT: TABLEDi over frequency in place of values of a property. Ids; 0: the value of the property.
+struct FrequencyTables {
+  std::string property;  ///< PELAS, PDAMP or PBUSH
+  int pid = 0;
+  std::array<int, 6> k{}, b{}, ge{};  ///< of PELAS and PDAMP the first
   CardLocation at;
 };
 
@@ -180,6 +181,7 @@ struct DynamicCards {
   std::vector<StaticExcitation> lseq;
   std::vector<InitialMotion> initial;
   std::vector<DynamicTable> tables;
+  std::vector<FrequencyTables> frequency_tables;
   std::vector<DampingCurve> damping;
   std::vector<FrequencyList> frequencies;
   std::vector<TimeSteps> steps;
@@ -235,6 +237,7 @@ struct DynamicSelection {
   int random = 0;              ///< set of RANDPS and RANDT1
   int rcross = 0;              ///< set of RCROSS
   int rgyro = 0, rmethod = 0;  ///< RGYRO and ROTORD cards
+  int modsel = 0;              ///< MODSEL, MODESELECT: a SET of mode numbers; 0: all
   /// (scale, DMIG name) of K2PP, M2PP, B2PP. In a response they are in k2gg, m2gg and b2gg of the subcase too.
   std::vector<std::pair<double, std::string>> k2pp, m2pp, b2pp;
   std::optional<bool> resvec;  ///< RESVEC = YES, NO

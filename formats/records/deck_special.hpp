@@ -103,6 +103,42 @@ struct Pgap {
   CardLocation at;
 };
 
+/// CFAST: a fastener between two shells.
+struct Cfast {
+  int id = 0, pid = 0;
+  bool by_elements = false;                      ///< TYPE = ELEM: the shells are two elements, else two properties
+  int ida = 0, idb = 0;                          ///< the shells
+  int gs = 0, ga = 0, gb = 0;                    ///< grid that locates it; places of its ends; 0: none
+  Eigen::Vector3d xs = Eigen::Vector3d::Zero();  ///< place where gs is 0, basic
+  CardLocation at;
+};
+struct Pfast {
+  int id = 0;
+  double d = 0;                      ///< diameter
+  int mcid = -1, mflag = 0;          ///< axes of the stiffnesses
+  std::array<double, 3> kt{}, kr{};  ///< along and about the axes
+  double mass = 0, ge = 0;
+  CardLocation at;
+};
+/// CWELD: a weld between two patches of shells, or between two grids (ALIGN).
+struct Cweld {
+  int id = 0, pid = 0;
+  std::string format;                            ///< GRIDID, ELEMID, ELPAT, PARTPAT, ALIGN
+  int gs = 0, ga = 0, gb = 0;                    ///< grid that locates it; places of its ends; 0: none
+  std::string types;                             ///< GRIDID: Q or T for each side, "QT"
+  int ida = 0, idb = 0;                          ///< ELEMID, ELPAT: elements; PARTPAT: properties
+  std::vector<int> grids_a, grids_b;             ///< GRIDID, without blanks
+  Eigen::Vector3d xs = Eigen::Vector3d::Zero();  ///< place where gs is 0, basic
+  CardLocation at;
+};
+struct Pweld {
+  int id = 0, mid = 0;
+  double d = 0;
+  bool is_spot = false;             ///< TYPE = SPOT: the length of the beam is that of half the shells
+  double ld_min = 0.2, ld_max = 5;  ///< bounds of the ratio of length to diameter
+  CardLocation at;
+};
+
 /// ACCEL1 (every grid of a list) and ACCEL (along a direction).
 struct GridAcceleration {
   int sid = 0, cid = 0;
@@ -126,6 +162,10 @@ struct SpecialCards {
   std::vector<Rspline> rspline;
   std::vector<Cgap> cgap;
   std::vector<Pgap> pgap;
+  std::vector<Cfast> cfast;
+  std::vector<Pfast> pfast;
+  std::vector<Cweld> cweld;
+  std::vector<Pweld> pweld;
   std::vector<GridAcceleration> accelerations;
 };
 

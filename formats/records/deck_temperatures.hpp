@@ -1,10 +1,13 @@
 #pragma once
-/// \file Temperatures of grids and elements: included by deck.hpp.
+/// \file Temperatures of grids and elements, materials over temperature: included by deck.hpp.
+#include <map>
+#include <string>
 #include <vector>
 
 #include <Eigen/Dense>
 
 #include "formats/records/card_location.hpp"
+#include "formats/records/function_table.hpp"
 
 namespace bough::records {
 
@@ -34,11 +37,23 @@ struct PlateTemperature {
   CardLocation at;
 };
 
+/// MATT1, MATT2, MATT8, MATT9, MATT11: tables over temperature in place of the fields of a material.
+struct MaterialTables {
+  std::string material;  ///< MAT1, MAT2, MAT8, MAT9, MAT11
+  int mid = 0;
+  std::vector<int> tables;  ///< TABLEMi of each field of the material after its id; 0: the field counts
+  CardLocation at;
+};
+
 struct TemperatureCards {
   std::vector<GridTemperature> grids;
   std::vector<DefaultTemperature> defaults;
   std::vector<BarTemperature> bars;
   std::vector<PlateTemperature> plates;
+  std::vector<MaterialTables> materials;
+  std::vector<FunctionTable> tables;  ///< TABLEM1 to TABLEM4
+  /// Property of the deck by the id of its copy at a temperature; empty before materials are evaluated.
+  std::map<int, int> properties;
 };
 
 }  // namespace bough::records

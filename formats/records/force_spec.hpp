@@ -46,7 +46,10 @@ struct ForceElementRecord {
   Vector3d wind = Vector3d::Zero();  ///< velocity of the air, inertial
   std::string planet;                ///< drag, solar pressure: a central gravity with a radius; empty: none
   double scale_height = 0, altitude = 0;
+  std::string density_table;         ///< in place of density: function of type table, density over altitude
   Vector3d spin = Vector3d::Zero();  ///< of the air with its planet, inertial
+  bool has_faces = false;            ///< drag, solar pressure: on the faces of a flexible body's mesh, in place of area
+  std::vector<int> faces;            ///< ids of the elements of these faces; empty: all of surfaces
   // Solar pressure
   double pressure = 0, specular = 0, diffuse = 0, sun_size = 0;
   Vector3d sun = Vector3d::Zero();  ///< direction to it, inertial

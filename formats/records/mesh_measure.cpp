@@ -14,6 +14,7 @@ double calc_measure(const BodyMesh& mesh, const BodyMesh::Block& block, Eigen::I
   const auto& type = block.type;
   const Eigen::Index corners = type.starts_with("hexa")                                ? 8
                                : type.starts_with("penta")                             ? 6
+                               : type.starts_with("pyramid")                           ? 5
                                : type.starts_with("quad") || type.starts_with("tetra") ? 4
                                : type.starts_with("tri")                               ? 3
                                                                                        : 2;
@@ -22,6 +23,7 @@ double calc_measure(const BodyMesh& mesh, const BodyMesh::Block& block, Eigen::I
   if (type.starts_with("tri")) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
   if (type.starts_with("quad")) return 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).norm();
   if (type.starts_with("tetra")) return tetra(0, 1, 2, 3);
+  if (type.starts_with("pyramid")) return tetra(0, 1, 2, 4) + tetra(0, 2, 3, 4);
   if (type.starts_with("penta")) return tetra(0, 1, 2, 3) + tetra(1, 2, 3, 4) + tetra(2, 3, 4, 5);
   if (!type.starts_with("hexa")) return 0;
   return tetra(0, 1, 2, 6) + tetra(0, 2, 3, 6) + tetra(0, 3, 7, 6) + tetra(0, 7, 4, 6) + tetra(0, 4, 5, 6) +

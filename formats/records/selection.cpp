@@ -11,7 +11,8 @@ CardLocation find_selection(const Deck& deck, const std::string& command, int se
                                                           {"SUPORT1", &Subcase::suport1},
                                                           {"STATSUB", &Subcase::statsub},
                                                           {"NSM", &Subcase::nsm},
-                                                          {"TEMPERATURE(INITIAL)", &Subcase::initial_temperature}};
+                                                          {"TEMPERATURE(INITIAL)", &Subcase::initial_temperature},
+                                                          {"TEMPERATURE(MATERIAL)", &Subcase::material_temperature}};
   const auto selected = sets.at(command);
   for (const auto& subcase : deck.subcases)
     if (subcase.*selected == set) return subcase.find_command(command);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 
@@ -90,6 +91,50 @@ SloshPendulum calc_sphere_slosh(double radius, double depth, double density) {
   return {density * volume * std::pow(radius, 3), radius / lambda, 0};
 }
 
+double calc_wall_damping(double radius, double depth, double viscosity, double g) {
+  const double ratio = depth / radius, x = std::min(1.84 * ratio, 300.0);
+  const double bottom = 0.318 / std::sinh(x) * (1 + (1 - ratio) / std::cosh(x));
+  return 0.79 * std::sqrt(viscosity) / (std::pow(radius, 0.75) * std::pow(g, 0.25)) * (1 + bottom);
+}
+
+double calc_baffle_damping(double radius, double width, double depth, double amplitude) {
+  const double share = width / radius * (2 - width / radius);
+  return 2.83 * std::exp(-4.60 * depth / radius) * std::pow(share, 1.5) * std::sqrt(amplitude / radius);
+}
+
+namespace {
+
+/// Damping ratio of all causes; empty: reported by `refuse`.
+template <class Refuse>
+std::optional<double> calc_damping(const TankRecord& tank, double depth, double g, const Refuse& refuse) {
+  const bool has_baffles = !tank.baffle_depths.empty();
+  if ((has_baffles || tank.slosh_viscosity > 0) && tank.type != TankType::Cylinder) {
+    refuse("has a slosh_viscosity or baffles and is no cylinder", "give its slosh_damping");
+    return {};
+  }
+  if ((tank.slosh_damping > 0 || tank.slosh_viscosity > 0 || has_baffles || tank.slosh_model == SloshModel::Spring) &&
+      !(g > 0)) {
+    refuse(tank.slosh_model == SloshModel::Spring
+               ? "sloshes on springs and has no acceleration that their stiffness belongs to"
+               : "has a slosh_damping and no acceleration that it belongs to",
+           "give slosh_acceleration");
+    return {};
+  }
+  double damping = tank.slosh_damping;
+  if (tank.slosh_viscosity > 0) damping += calc_wall_damping(tank.radius, depth, tank.slosh_viscosity, g);
+  for (const double baffle : tank.baffle_depths) {
+    if (!(baffle >= 0 && baffle <= depth) || !(tank.baffle_width < tank.radius)) {
+      refuse("has a baffle that is above the surface, below the bottom or wider than the radius",
+             "give baffle_depths from 0 to the depth of the liquid, and a baffle_width below radius");
+      return {};
+    }
+    damping += calc_baffle_damping(tank.radius, tank.baffle_width, baffle, tank.baffle_amplitude);
+  }
+  return damping;
+}
+
+}  // namespace
+
 void add_slosh(SystemSpec& spec, Diagnostics& diagnostics) {
   for (TankRecord& tank : spec.tanks) {
     if (!tank.sloshes) continue;
@@ -115,29 +160,37 @@ void add_slosh(SystemSpec& spec, Diagnostics& diagnostics) {
     const SloshPendulum p = is_sphere ? calc_sphere_slosh(tank.radius, depth, tank.density)
                                       : calc_cylinder_slosh(tank.radius, depth, tank.density);
     const double g = tank.slosh_acceleration > 0 ? tank.slosh_acceleration : spec.simulation.gravity.norm();
-    if (tank.slosh_damping > 0 && !(g > 0)) {
-      refuse("has a slosh_damping and no acceleration that it belongs to", "give slosh_acceleration");
-      continue;
-    }
+    const std::optional<double> ratio = calc_damping(tank, depth, g, refuse);
+    if (!ratio) continue;
     const Vector3d e = tank.axis.normalized(), first = e.unitOrthogonal();
     BodyRecord bob;
     bob.name = tank.name + ".slosh";
     bob.at = tank.at;
     bob.mass = p.mass;
-    bob.cg = -p.length * e;
     HingeRecord hinge;
     hinge.name = bob.name;
     hinge.at = tank.at;
-    hinge.type = HingeType::Universal;
     hinge.parent = tank.body;
     hinge.child = bob.name;
-    hinge.parent_position = tank.position + p.hinge * e;
-    hinge.axis = first;
-    hinge.axis2 = e.cross(first);
-    const double damping = 2 * tank.slosh_damping * p.mass * p.length * std::sqrt(g * p.length);
-    if (damping > 0) hinge.damping = {damping, damping};
     tank.slosh_mass = p.mass;
-    tank.slosh_position = hinge.parent_position + bob.cg;
+    tank.slosh_position = tank.position + (p.hinge - p.length) * e;
+    double damping = 2 * *ratio * p.mass * std::sqrt(g / p.length);
+    if (tank.slosh_model == SloshModel::Spring) {
+      hinge.type = HingeType::General;
+      hinge.translations = "xy";
+      hinge.parent_position = tank.slosh_position;
+      hinge.parent_rotation << first, e.cross(first), e;
+      hinge.child_rotation = hinge.parent_rotation;
+      hinge.stiffness.assign(2, p.mass * g / p.length);
+    } else {
+      hinge.type = HingeType::Universal;
+      hinge.parent_position = tank.position + p.hinge * e;
+      hinge.axis = first;
+      hinge.axis2 = e.cross(first);
+      bob.cg = -p.length * e;
+      damping *= p.length * p.length;
+    }
+    if (damping > 0) hinge.damping = {damping, damping};
     spec.bodies.push_back(std::move(bob));
     spec.hinges.push_back(std::move(hinge));
   }

@@ -15,6 +15,7 @@
 #include "formats/records/flex_body.hpp"
 #include "formats/records/force_spec.hpp"
 #include "formats/records/function_spec.hpp"
+#include "formats/records/orbit_spec.hpp"
 #include "formats/records/sensor_kinds.hpp"
 #include "formats/records/tank_spec.hpp"
 #include "formats/records/unit_labels.hpp"
@@ -28,8 +29,9 @@ struct RigidNode {
 
 struct BodyRecord {
   std::string name;
-  std::string file;            ///< flexible-body HDF5; empty = rigid
-  bool is_unreadable = false;  ///< file: could not be read, which has been said
+  std::string file;                 ///< flexible-body HDF5; empty = rigid
+  std::vector<std::string> levels;  ///< flexible: files of its fill levels, `file` is that of the start; empty: one
+  bool is_unreadable = false;       ///< file: could not be read, which has been said
   double mass = 0;
   Vector3d cg = Vector3d::Zero();       ///< in B
   Matrix3d inertia = Matrix3d::Zero();  ///< about the centre of mass (rigid bodies), in B
@@ -97,13 +99,14 @@ struct SensorRecord {
   int node = 0;
   std::string frame = "inertial";  ///< "inertial", "body" (the node's own body) or another body's name: components
   std::string relative_to;         ///< relative to the motion of this body (not deflection, rotation); empty: none
-  bool is_orbital = false;         ///< relative_to: to the LVLH frame of the body about its central gravity
-  bool from_turning = true;        ///< relative_to: as an observer who turns with that body sees it
-  std::string hinge;               ///< hinge sensors
-  int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all; modal sensors: the mode
-  int element = 0;                 ///< element sensors: its id in the body's file
-  std::string component;           ///< element sensors: one of its rows; empty = all
-  std::string to_body;             ///< distance: the other end; empty = ground
+  int relative_node = 0, frame_node = 0;  ///< node of that body; node of the body of `frame`, whose axes these are
+  bool is_orbital = false;                ///< relative_to: to the LVLH frame of the body about its central gravity
+  bool from_turning = true;               ///< relative_to: as an observer who turns with that body sees it
+  std::string hinge;                      ///< hinge sensors
+  int coordinate = 0;                     ///< hinge sensors: 1-based; 0 = all; modal sensors: the mode
+  int element = 0;                        ///< element sensors: its id in the body's file
+  std::string component;                  ///< element sensors: one of its rows; empty = all
+  std::string to_body;                    ///< distance: the other end; empty = ground
   int to_node = 0;
   std::string sequence = "321";           ///< euler: axes of the three turns, in their order
   Matrix3d mount = Matrix3d::Identity();  ///< R_KS: the sensor's axes S in those of the node K
@@ -114,7 +117,7 @@ struct SensorRecord {
 };
 
 enum class EventDirection { Both, Rising, Falling };
-enum class EventAction { Log, Stop, Lock, Release, Break, Close, Enable, Disable, Switch };
+enum class EventAction { Log, Stop, Lock, Release, Break, Close, Enable, Disable, Switch, Level };
 
 /// [[event]]: at a time, or where a signal crosses a value.
 struct UserEventRecord {
@@ -125,8 +128,9 @@ struct UserEventRecord {
   EventDirection direction = EventDirection::Both;
   double tolerance = 0;  ///< of the time found; 0: 1e-12 of the duration
   EventAction action = EventAction::Log;
-  std::string target;  ///< lock, release: hinge; break, close: constraint; enable, disable, switch: controller
-  int choice = 0;      ///< switch: the input that the controller passes on, 1-based
+  std::string target;  ///< lock, release: hinge; break, close: constraint; enable, disable, switch: controller; level:
+                       ///< body
+  int choice = 0;      ///< switch: the input that the controller passes on; level: of the body's levels; 1-based
   std::vector<int> coordinates;  ///< lock, release: 1-based rates of the hinge; empty: all
   SourceLocation at;
 };
@@ -158,6 +162,7 @@ struct SystemSpec {
   std::vector<std::pair<std::string, double>> parameters;  ///< [parameters]; their numbers stand where they are named
   std::vector<BodyRecord> bodies;
   std::vector<TankRecord> tanks;
+  std::vector<OrbitRecord> orbits;
   std::vector<HingeRecord> hinges;
   std::vector<ConstraintRecord> constraints;
   std::vector<FunctionRecord> functions;

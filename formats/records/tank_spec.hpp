@@ -11,6 +11,8 @@ namespace bough::records {
 
 enum class TankType { Cylinder, Sphere, Grain, Table };
 
+enum class SloshModel { Pendulum, Spring };
+
 struct TankRecord {
   std::string name, body;
   TankType type = TankType::Cylinder;
@@ -24,9 +26,14 @@ struct TankRecord {
   std::vector<Eigen::Vector3d> cg;
   std::vector<Eigen::Matrix3d> inertia;  ///< about the centre of mass
   bool sloshes = false;
-  double slosh_damping = 0;       ///< ratio
-  double slosh_acceleration = 0;  ///< axial, that the ratio belongs to; 0: gravity of the run
-  double slosh_mass = 0;          ///< of the pendulum in the bodies, subtracted from the rigid part (add_slosh)
+  SloshModel slosh_model = SloshModel::Pendulum;
+  double slosh_damping = 0;           ///< ratio
+  double slosh_viscosity = 0;         ///< kinematic, L²/T; 0: no damping by the wall
+  double baffle_width = 0;            ///< of ring baffles at a cylinder's wall
+  std::vector<double> baffle_depths;  ///< below the free surface
+  double baffle_amplitude = 0;        ///< of the wave at the wall
+  double slosh_acceleration = 0;      ///< axial, that the ratio belongs to; 0: gravity of the run
+  double slosh_mass = 0;              ///< of the pendulum in the bodies, subtracted from the rigid part (add_slosh)
   Eigen::Vector3d slosh_position = Eigen::Vector3d::Zero();  ///< of its bob at rest, in B
   int exit_node = 0;                                         ///< function: where the mass leaves
   double exit_radius = 0;

@@ -20,14 +20,15 @@ const std::map<std::string, Keys>& get_name_keys() {
       {"body",
        {"hinge/parent", "hinge/child", "constraint/parent", "constraint/child", "force/body", "force/to_body",
         "force/bodies", "sensor/body", "sensor/frame", "sensor/relative_to", "sensor/to_body", "sensor/terms/body",
-        "actuator/body", "tank/body"}},
+        "orbit/body", "event/body", "actuator/body", "tank/body"}},
       {"tank", {"actuator/tank"}},
+      {"orbit", {"hinge/parent", "constraint/parent", "sensor/frame", "sensor/relative_to"}},
       {"hinge", {"constraint/terms/hinge", "sensor/hinge", "actuator/hinge", "event/hinge"}},
       {"constraint", {"event/constraint"}},
       {"function",
        {"hinge/motion", "hinge/spring_table", "hinge/damper_table", "force/function", "force/spring_table",
-        "force/damper_table", "function/of", "tank/function"}},
-      {"force", {"force/planet"}},
+        "force/damper_table", "force/density_table", "function/of", "tank/function"}},
+      {"force", {"force/planet", "orbit/planet"}},
       {"controller", {"event/controller"}},
       {"body.load", {"body/modes/residual"}}};
   return keys;
@@ -44,6 +45,8 @@ const std::map<std::string, std::string> kGroups{
     {"body", "bodies"},        {"hinge", "hinges"},   {"constraint", "constraints"},
     {"force", "forces"},       {"sensor", "sensors"}, {"controller", "controllers"},
     {"actuator", "actuators"}, {"input", "inputs"},   {"tank", "tanks"}};
+
+constexpr std::string_view kOrbit = "lvlh:";
 
 struct Use {
   std::string path;  ///< with the numbers of list entries
@@ -82,9 +85,13 @@ class UseFinder {
       return text == "$" + name_;
     }
     const auto keys = get_name_keys().find(kind_);
-    if (keys != get_name_keys().end() && keys->second.count(key_path) != 0 && text == name_) {
-      use.renamed = renamed_;
-      return true;
+    if (keys != get_name_keys().end() && keys->second.count(key_path) != 0) {
+      // Sensors name bodies as lvlh:BODY and BODY:NODE, hinges orbits as lvlh:ORBIT.
+      const std::size_t begin = text.starts_with(kOrbit) ? kOrbit.size() : 0;
+      if (starts_with_name(text, begin, key_path.starts_with("sensor/") && begin == 0 ? ":" : "")) {
+        use.renamed = text.substr(0, begin) + renamed_ + text.substr(begin + name_.size());
+        return true;
+      }
     }
     const bool is_signal = kSignalKeys.count(key_path) != 0 && kSignalKinds.count(kind_) != 0;
     const bool is_target = key_path == "connect/to" && kTargetKinds.count(kind_) != 0;

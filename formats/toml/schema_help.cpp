@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <functional>
 
-#include <nlohmann/json.hpp>
-
 #include "formats/toml/detail/schema.hpp"
+#include "formats/toml/detail/schema_json.hpp"
 
 namespace bough::toml_files {
 
@@ -17,15 +16,6 @@ std::string join_words(const std::vector<std::string>& words, const std::string&
   std::string text;
   for (const auto& word : words) text += (text.empty() ? "" : separator) + word;
   return text;
-}
-
-/// Merges a schema with its $ref; keywords of the schema take precedence.
-json resolve_reference(const json& schema, const json& root) {
-  if (!schema.contains("$ref")) return schema;
-  auto whole = root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));
-  for (const auto& [key, value] : schema.items())
-    if (key != "$ref") whole[key] = value;
-  return resolve_reference(whole, root);
 }
 
 std::vector<std::string> list_types(const json& schema) {
@@ -50,6 +40,14 @@ KeyHelp describe_key(const std::string& name, const json& schema) {
   if (schema.contains("minimum")) help.range = "at least " + schema["minimum"].dump();
   if (schema.contains("exclusiveMinimum")) help.range = "more than " + schema["exclusiveMinimum"].dump();
   if (schema.contains("default")) help.default_value = schema["default"].dump();
+  if (const auto dims = schema.find("dims"); dims != schema.end()) {
+    if (dims->is_string()) {
+      help.dims = dims->get<std::string>();
+    } else {
+      for (const auto& [type, text] : dims->items())
+        help.dims += (help.dims.empty() ? "" : "; ") + (type == "*" ? "else" : type) + " " + text.get<std::string>();
+    }
+  }
   help.description = schema.value("description", "");
   return help;
 }
@@ -110,6 +108,7 @@ std::string format_help(const KeyHelp& key) {
   std::string text = "  " + key.name + ": " + key.type;
   if (!key.choices.empty()) text += ", one of " + join_words(key.choices, ", ");
   if (!key.range.empty()) text += ", " + key.range;
+  if (!key.dims.empty() && key.dims != "mixed") text += " [" + key.dims + "]";
   if (key.is_required) text += ", required";
   if (!key.default_value.empty()) text += ", default " + key.default_value;
   return text + (key.description.empty() ? "" : "\n      " + key.description) + "\n";

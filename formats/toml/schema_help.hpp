@@ -11,6 +11,7 @@ struct KeyHelp {
   std::vector<std::string> choices;  ///< of an enum
   std::string range;                 ///< "more than 0"; may be empty
   std::string default_value;         ///< JSON; may be empty
+  std::string dims;                  ///< "F/L", or by type "contact T/L; else F T/L"; empty without a dimension
   std::string description;
   bool is_required = false;
   bool takes_text = false, takes_other = false;  ///< accepts a string; accepts other values

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <charconv>
 #include <numbers>
 #include <set>
 #include <sstream>
 
 #include <Eigen/Eigenvalues>
 
+#include "formats/records/orbit.hpp"
 #include "formats/records/slosh.hpp"
 #include "formats/toml/detail/constraint_table.hpp"
 #include "formats/toml/detail/control_tables.hpp"
@@ -14,6 +16,7 @@
 #include "formats/toml/detail/function_table.hpp"
 #include "formats/toml/detail/hinge_table.hpp"
 #include "formats/toml/detail/inertia.hpp"
+#include "formats/toml/detail/orbit_table.hpp"
 #include "formats/toml/detail/parameters.hpp"
 #include "formats/toml/detail/references.hpp"
 #include "formats/toml/detail/schema.hpp"
@@ -50,13 +53,18 @@ records::BodyRecord read_body(const Fields& table, const std::string& path, Diag
   body.num_modes = table.get_int("modes", -1);
   body.recover_all = table.get_bool("recover", false);
   body.recover = table.get_ints("recover");
+  for (const auto& level : table.get_strings("levels")) body.levels.push_back(resolve_path(path, level));
+  if (!body.levels.empty() && table.has("file") && std::count(body.levels.begin(), body.levels.end(), body.file) != 1)
+    diagnostics.error("toml.bad-value", table.locate("levels"),
+                      "'levels' of body '" + body.name + "' does not contain its file once",
+                      "list the files of all levels, that of the start among them");
   if (table.has("file")) {
     // A .FLX, under any name, may leave them to the system, as TREETOPS has it. The content decides when it is read.
     if (body.file.ends_with(".h5") || body.file.ends_with(".hdf5"))
       refuse_keys(table, {"cg", "inertia"}, "in body '" + body.name + "', which comes from a file", diagnostics);
     refuse_keys(table, {"nodes"}, "in body '" + body.name + "', which comes from a file", diagnostics);
   } else {
-    refuse_keys(table, {"stiffening", "eta", "eta_dot", "damping", "modes", "recover"},
+    refuse_keys(table, {"levels", "stiffening", "eta", "eta_dot", "damping", "modes", "recover"},
                 "in body '" + body.name + "', which is rigid", diagnostics);
   }
   return body;
@@ -176,6 +184,19 @@ void set_parameters(std::string& text, const std::string& path,
   }
 }
 
+/// BODY:NODE into its parts, unless a body has this name.
+void split_node(const records::SystemSpec& spec, std::string& name, int& node) {
+  const auto is_it = [&](const auto& body) { return body.name == name; };
+  const auto colon = name.rfind(':');
+  if (colon == std::string::npos || colon == 0 || std::any_of(spec.bodies.begin(), spec.bodies.end(), is_it)) return;
+  const char* const end = name.data() + name.size();
+  int id = 0;
+  const auto [last, failed] = std::from_chars(name.data() + colon + 1, end, id);
+  if (failed != std::errc() || last != end || id < 0) return;
+  node = id;
+  name.erase(colon);
+}
+
 }  // namespace
 
 records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics,
@@ -214,6 +235,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
       if (entry.value.is_number()) spec.parameters.emplace_back(entry.key, entry.value.number);
   for (const Fields& table : fields.get_tables("body")) spec.bodies.push_back(read_body(table, path, diagnostics));
   for (const Fields& table : fields.get_tables("tank")) spec.tanks.push_back(read_tank(table, diagnostics));
+  for (const Fields& table : fields.get_tables("orbit")) spec.orbits.push_back(read_orbit(table, diagnostics));
   for (const Fields& table : fields.get_tables("hinge")) spec.hinges.push_back(read_hinge(table, diagnostics));
   for (const Fields& table : fields.get_tables("constraint"))
     spec.constraints.push_back(read_constraint(table, diagnostics));
@@ -233,6 +255,11 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
   for (const Fields& table : fields.get_tables("event")) spec.events.push_back(read_event(table, diagnostics));
   spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);
   if (!spec.tanks.empty()) records::add_slosh(spec, diagnostics);
+  records::add_orbits(spec, diagnostics);
+  for (auto& sensor : spec.sensors) {
+    if (!sensor.is_orbital) split_node(spec, sensor.relative_to, sensor.relative_node);
+    split_node(spec, sensor.frame, sensor.frame_node);
+  }
   check_names(spec, diagnostics);
   return spec;
 }

@@ -1,10 +1,12 @@
 #include "modal/bases/ritz.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/products.hpp"
+#include "fe/model/row_kinds.hpp"
 #include "modal/canonical.hpp"
 #include "modal/tolerances.hpp"
 
@@ -87,24 +89,42 @@ VectorXd calc_lost_flexibility(const fe::Model& model, const MatrixXd& Y, const 
   return (whole.array() > 0).select(1 - held.array() / whole.array(), 0.0);
 }
 
-/// M-norms at which a static solution X of F is round-off: a frequency 1e11 times the lowest of all, or one that the
-/// support holds (a moment on a motion without mass and strain), which has less than the flexibility that F has at
-/// least, (FᵀF)² / FᵀKF <= FᵀK⁻¹F. Such a vector, of unit mass, would be anything: a twist of any size, which has no
-/// mass.
+/// Returns per load whether the supports hold it whole (a moment on a motion without mass and strain, a load on the
+/// interface): the forces K X of its static solution are less than kHeldLoad of it, among forces, moments and loads of
+/// scalar points alike, whose sizes depend on the unit of length.
+std::vector<bool> find_held_loads(const fe::Model& model, const MatrixXd& F, const MatrixXd& X) {
+  const auto kinds = fe::list_row_kinds(model);
+  const auto sum_squares = [&](const Eigen::Ref<const VectorXd>& loads) {
+    std::array<double, 3> sum{};
+    for (Eigen::Index i = 0; i < loads.size(); ++i)
+      sum[static_cast<std::size_t>(kinds[static_cast<std::size_t>(i)])] += loads[i] * loads[i];
+    return sum;
+  };
+  const MatrixXd given = model.T().transpose() * F;
+  const MatrixXd carried = model.T().transpose() * fe::calc_stiffness_times(model, X);
+  std::vector<bool> is_held;
+  for (Eigen::Index c = 0; c < F.cols(); ++c) {
+    const auto whole = sum_squares(given.col(c)), part = sum_squares(carried.col(c));
+    bool is_whole = true;
+    for (std::size_t k = 0; k < whole.size(); ++k)
+      is_whole = is_whole && part[k] <= detail::kHeldLoad * detail::kHeldLoad * whole[k];
+    is_held.push_back(is_whole);
+  }
+  return is_held;
+}
+
+/// M-norms at which a static solution X of F is round-off: a frequency 1e11 times the lowest of all, or one of a load
+/// that the support holds. Such a vector, of unit mass, would be anything: a twist of any size, which has no mass.
 VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const MatrixXd& F, const MatrixXd& X,
                           const VectorXd& norm) {
   const VectorXd flexibility = F.cwiseProduct(X).colwise().sum();
-  const VectorXd square = F.colwise().squaredNorm();
-  const VectorXd stiffness = F.cwiseProduct(fe::calc_stiffness_times(model, F)).colwise().sum();
+  const auto held = find_held_loads(model, F, X);
   double longest = 0;  // 1/ω²
   if (kept.cols() > 0) {
     const double lambda = kept.col(0).dot(VectorXd(fe::calc_stiffness_times(model, kept.col(0))));
     if (lambda > 0) longest = 1 / lambda;
   }
-  const auto is_held = [&](Eigen::Index i) {
-    return !(flexibility(i) > 0) ||
-           (stiffness(i) > 0 && flexibility(i) < detail::kHeldFlexibility * square(i) * square(i) / stiffness(i));
-  };
+  const auto is_held = [&](Eigen::Index i) { return !(flexibility(i) > 0) || held[static_cast<std::size_t>(i)]; };
   for (Eigen::Index i = 0; i < F.cols(); ++i)
     if (!is_held(i)) longest = std::max(longest, norm(i) * norm(i) / flexibility(i));
   VectorXd min_norm(F.cols());

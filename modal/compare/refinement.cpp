@@ -15,8 +15,8 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Corners come first in every element type.
 Index count_corners(const std::string& type, Index nodes) {
-  static const std::vector<std::pair<std::string, Index>> table{{"line", 2},  {"tri", 3},   {"quad", 4},
-                                                                {"tetra", 4}, {"penta", 6}, {"hexa", 8}};
+  static const std::vector<std::pair<std::string, Index>> table{{"line", 2},    {"tri", 3},   {"quad", 4}, {"tetra", 4},
+                                                                {"pyramid", 5}, {"penta", 6}, {"hexa", 8}};
   for (const auto& [name, count] : table)
     if (type.rfind(name, 0) == 0) return std::min(count, nodes);
   return 0;

@@ -12,6 +12,7 @@
 #include "modal/response/accuracy.hpp"
 #include "modal/response/deck_response.hpp"
 #include "modal/response/direct_model.hpp"
+#include "modal/response/frequency_tables.hpp"
 #include "modal/response/residual_modes.hpp"
 
 namespace bough::modal::complex_modes {
@@ -93,7 +94,8 @@ Problem make_direct_problem(const fe::System& system, const records::DynamicDeck
 
 Problem make_modal_problem(const fe::System& system, const records::DynamicDeck& deck,
                            const records::DynamicSubcase& subcase, const response::DampingChoice& damping,
-                           const PhysicalInput& input, const ComplexModesOptions& options, Diagnostics& diagnostics) {
+                           const PhysicalInput& input, const std::optional<response::FrequencyTables>& tables,
+                           const ComplexModesOptions& options, Diagnostics& diagnostics) {
   const auto& model = system.model;
   Problem problem;
   const auto modes = response::calc_mode_basis(system, options.choose_eigen(subcase, diagnostics), deck,
@@ -103,19 +105,23 @@ Problem make_modal_problem(const fe::System& system, const records::DynamicDeck&
   auto excitation = make_no_excitation(model);
   // Forces of direct input, and of USETi U6 and RVDOFi: residual vectors make the modes exact for these statically.
   excitation.residual = response::collect_unit_loads(model, deck, diagnostics).F;
-  const MatrixXd of_input = MatrixXd(input.N_g.transpose());
-  if (of_input.cols() <= kMaxInputVectors) {
-    MatrixXd all(model.num_gdofs(), excitation.residual.cols() + of_input.cols());
-    all << excitation.residual, of_input;
+  const auto add_residual = [&](const MatrixXd& loads) {
+    if (loads.cols() > kMaxInputVectors) return;
+    MatrixXd all(model.num_gdofs(), excitation.residual.cols() + loads.cols());
+    all << excitation.residual, loads;
     excitation.residual = all;
-  }
+  };
+  add_residual(MatrixXd(input.N_g.transpose()));
+  if (tables) add_residual(MatrixXd(tables->directions()));
   diagnostics.throw_if_errors();
   const auto statics = response::make_residual_solver(system, modes, problem.num_massless);
   const auto solve_static = [&](const MatrixXd& F) { return statics->solve(F, &diagnostics); };
   const bool with_residuals = subcase.dynamics.resvec.value_or(deck.find_param("RESVEC") == nullptr ||
                                                                deck.find_param("RESVEC")->value[0] != 'N');
-  const auto reduced =
+  auto reduced =
       response::make_response_model(model, modes, solve_static, excitation, {}, damping, with_residuals, diagnostics);
+  response::select_modes(deck, subcase, modes.num_left_out, reduced, diagnostics);
+  diagnostics.throw_if_errors();
   response::report_accuracy(response::calc_basis_error(model, reduced), 0, deck.locate({}), diagnostics);
   problem.Phi = reduced.Phi;
   problem.num_coordinates = reduced.Phi.cols();
@@ -411,6 +417,7 @@ struct ComplexModesSolver::Prepared {
   Problem problem;
   std::optional<rotors::RotorCase> rotor_case;
   std::optional<rotors::RotorTerms> rotor_terms;
+  std::optional<response::FrequencyTables> tables;  ///< over the speed; none without rotors
 
   std::string name_unknown(Index i) const {
     if (i >= problem.num_coordinates) {
@@ -435,7 +442,13 @@ struct ComplexModesSolver::Prepared {
     };
     if (speed) {
       const fe::SparseColumns K = rotor_terms->calc_circulation(*speed) + rotor_terms->calc_centrifugal(*speed);
-      problem.add(builder, complex(K, 1) + without, complex(rotor_terms->calc_damping(*speed), 1), ComplexSparse(n, n));
+      ComplexSparse K_s = complex(K, 1) + without, B_s = complex(rotor_terms->calc_damping(*speed), 1);
+      if (tables) {
+        const double revolutions = std::abs(*speed) / (2 * std::numbers::pi);
+        K_s += tables->calc_stiffness_matrix(revolutions);
+        B_s += tables->calc_damping_matrix(revolutions);
+      }
+      problem.add(builder, K_s, B_s, ComplexSparse(n, n));
       return builder.build();
     }
     const auto terms = rotor_terms->calc_synchronous();
@@ -476,7 +489,39 @@ struct Selections {
   response::DampingChoice damping;
   PhysicalInput input;
   std::optional<rotors::RotorCase> rotor_case;
+  std::optional<response::FrequencyTables> tables;  ///< over the speed
 };
+
+/// Tables of PELAST, PDAMPT and PBUSHT over the speed of the reference rotor, in revolutions; none without rotors.
+std::optional<response::FrequencyTables> choose_tables(const fe::Model& model, const records::DynamicDeck& deck,
+                                                       const std::optional<rotors::RotorCase>& rotor_case, double g,
+                                                       Diagnostics& diagnostics) {
+  response::FrequencyTables tables(model, deck, g, diagnostics);
+  if (tables.is_empty()) return std::nullopt;
+  const auto at = deck.locate(deck.dynamics.frequency_tables.front().at);
+  if (!rotor_case) {
+    diagnostics.note("modal.nominal-tables", at,
+                     "tables over frequency have no effect on complex modes without rotors: the values of PELAS, PDAMP "
+                     "and PBUSH count",
+                     "give the values at the frequency of interest there");
+    return std::nullopt;
+  }
+  if (rotor_case->is_synchronous || rotor_case->is_rotating) {
+    diagnostics.error(
+        "modal.rotor-unsupported", at,
+        std::string("tables over the speed are not supported ") +
+            (rotor_case->is_synchronous ? "in synchronous analyses" : "in the rotating frame"),
+        rotor_case->is_synchronous
+            ? "solve at a list of speeds (ASYNC with RSPEED): the Campbell diagram has the critical speeds"
+            : "solve in the fixed frame (REFSYS = FIX)");
+    return std::nullopt;
+  }
+  diagnostics.note("modal.nominal-tables", at,
+                   "tables of PELAST, PDAMPT and PBUSHT are evaluated at the speed of the reference rotor in "
+                   "revolutions per unit of time",
+                   "--ignore PBUSHT computes with the values of PBUSH at every speed, as MSC Nastran");
+  return tables;
+}
 
 Selections read_selections(const fe::Model& model, const records::DynamicDeck& deck,
                            const records::DynamicSubcase& subcase, bool is_by_modes, Diagnostics& diagnostics) {
@@ -494,6 +539,7 @@ Selections read_selections(const fe::Model& model, const records::DynamicDeck& d
     diagnostics.error("modal.rotor-unsupported", deck.locate(subcase.find_command("RMETHOD")),
                       "B2PP, M2PP and TFL are matrices of the fixed frame, ROTORD has REFSYS = ROT",
                       "give dampers by CDAMP2, masses by CONM2, or solve in the fixed frame (REFSYS = FIX)");
+  found.tables = choose_tables(model, deck, found.rotor_case, found.damping.g, diagnostics);
   if (!is_by_modes && d.sdamping != 0)
     diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
                         "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
@@ -519,14 +565,15 @@ ComplexModesSolver::ComplexModesSolver(const records::DynamicDeck& deck, const f
   prepared_ = std::make_unique<Prepared>(deck, subcase, options, std::move(model));
   auto& p = *prepared_;
   p.method = method;
-  auto [without_input, damping, input, rotor_case] =
+  auto [without_input, damping, input, rotor_case, tables] =
       read_selections(p.model, deck, subcase, options.is_by_modes, diagnostics);
   diagnostics.throw_if_errors();
   p.input = std::move(input);
   p.rotor_case = std::move(rotor_case);
+  p.tables = std::move(tables);
   if (p.rotor_case) p.rotor_terms.emplace(p.model, *p.rotor_case, damping.g, diagnostics);
   p.problem = options.is_by_modes
-                  ? make_modal_problem(p.system, deck, without_input, damping, p.input, options, diagnostics)
+                  ? make_modal_problem(p.system, deck, without_input, damping, p.input, p.tables, options, diagnostics)
                   : make_direct_problem(p.system, deck, without_input, damping, p.input);
 }
 ComplexModesSolver::~ComplexModesSolver() = default;
@@ -573,7 +620,8 @@ SpeedModes ComplexModesSolver::solve_at(double speed, int num_modes, std::option
 }
 
 records::ComplexModesResult ComplexModesSolver::solve(std::optional<double> speed, Diagnostics& diagnostics) const {
-  const auto& [deck, subcase, options, model, system, method, input, problem, rotor_case, rotor_terms] = *prepared_;
+  const auto& [deck, subcase, options, model, system, method, input, problem, rotor_case, rotor_terms, tables] =
+      *prepared_;
   const auto pencil = prepared_->make_pencil(speed);
   const auto pairs = prepared_->find_pairs(pencil, method, options);
   if (method.shifts.empty()) report_accuracy(deck, pairs, count_wanted(method, options, pencil.size()), diagnostics);

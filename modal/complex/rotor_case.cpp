@@ -61,12 +61,21 @@ class Chooser {
     diagnostics_.error(id, deck_.locate(at), what, advice);
   }
 
+  /// The card that the command of the case control selects; nullptr with an error.
+  template <class Record>
+  const Record* find_selected(const std::vector<Record>& all, int sid, const std::string& command,
+                              const std::string& card) {
+    const Record* selected = find(all, &Record::sid, sid);
+    if (selected == nullptr)
+      fail("modal.missing-rotor", subcase_.find_command(command),
+           command + " = " + std::to_string(sid) + " names no " + card + " card of the deck",
+           "add the card or correct the id");
+    return selected;
+  }
+
   void choose_rgyro(int sid) {
-    const auto* analysis = find(cards_.analyses, &records::RotorAnalysis::sid, sid);
-    if (analysis == nullptr)
-      return fail("modal.missing-rotor", subcase_.find_command("RGYRO"),
-                  "RGYRO = " + std::to_string(sid) + " names no RGYRO card of the deck",
-                  "add the card or correct the id");
+    const auto* analysis = find_selected(cards_.analyses, sid, "RGYRO", "RGYRO");
+    if (analysis == nullptr) return;
     case_.is_synchronous = analysis->is_synchronous;
     case_.reference = analysis->reference;
     case_.low = analysis->low * analysis->unit;
@@ -205,11 +214,8 @@ class Chooser {
   }
 
   void choose_rotord(int sid) {
-    const auto* card = find(cards_.sweeps, &records::RotorSweepCard::sid, sid);
-    if (card == nullptr)
-      return fail("modal.missing-rotor", subcase_.find_command("RMETHOD"),
-                  "RMETHOD = " + std::to_string(sid) + " names no ROTORD card of the deck",
-                  "add the card or correct the id");
+    const auto* card = find_selected(cards_.sweeps, sid, "RMETHOD", "ROTORD");
+    if (card == nullptr) return;
     for (int i = 0; i < card->count; ++i) case_.speeds.push_back(card->first + i * card->step);
     if (card->shapes_at > 0) case_.shapes_at = card->shapes_at;
     for (const auto& rotor : card->rotors) {

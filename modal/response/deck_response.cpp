@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <type_traits>
 
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
@@ -11,6 +12,7 @@
 #include "formats/records/selection.hpp"
 #include "modal/null_motions.hpp"
 #include "modal/response/accuracy.hpp"
+#include "modal/response/frequency_tables.hpp"
 #include "modal/response/load_steps.hpp"
 #include "modal/response/residual_modes.hpp"
 #include "modal/response/rotor_response.hpp"
@@ -23,6 +25,8 @@ namespace {
 constexpr int kMaxCorners = 2000, kMaxCoupled = 50;
 /// Solved directly: each has two separate factorizations.
 constexpr int kMaxFactored = 20;
+/// Springs with tables that get residual vectors.
+constexpr Eigen::Index kMaxTableVectors = 60;
 
 double to_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 
@@ -221,11 +225,44 @@ std::shared_ptr<const RotorResponse> make_rotors(const fe::Model& model, const r
   return std::make_shared<RotorResponse>(model, *rotor_case, g, diagnostics);
 }
 
+/// Terms of rotors and of tables over frequency; empty without both.
+AddedStiffness join_terms(const std::shared_ptr<const RotorResponse>& rotors,
+                          const std::shared_ptr<const FrequencyTables>& tables) {
+  if (!rotors && !tables) return {};
+  return [&rotors, &tables](double hz) -> linear::ComplexSparse {
+    if (!rotors) return tables->calc_matrix(hz);
+    linear::ComplexSparse Z = rotors->calc_stiffness(hz);
+    if (tables) Z += tables->calc_matrix(hz);
+    return Z;
+  };
+}
+
+/// Tables of PELAST, PDAMPT and PBUSHT; nullptr without, and over time, where the values of the properties count.
+std::shared_ptr<const FrequencyTables> make_tables(const fe::Model& model, const records::DynamicDeck& deck,
+                                                   const ResponseOptions& options, double g, Diagnostics& diagnostics) {
+  auto tables = std::make_shared<FrequencyTables>(model, deck, g, diagnostics);
+  diagnostics.throw_if_errors();
+  if (tables->is_empty()) return nullptr;
+  const auto at = deck.locate(deck.dynamics.frequency_tables.front().at);
+  if (options.is_over_time) {
+    diagnostics.note("modal.nominal-tables", at,
+                     "tables over frequency have no effect over time: the values of PELAS, PDAMP and PBUSH count",
+                     "compute the frequency response for the tables");
+    return nullptr;
+  }
+  if (!options.is_direct)
+    diagnostics.note("modal.nominal-tables", at,
+                     "the modes are those of the values of PELAS and PBUSH; at each frequency the difference of the "
+                     "tables is added in the space of the modes and residual vectors",
+                     "give values near those of the tables at the frequencies of interest, or solve directly");
+  return tables;
+}
+
 /// Φᵀ Z Φ and Φᵀ Z Ψ.
-AddedCoordinates project_rotors(const std::shared_ptr<const RotorResponse>& rotors, const ResponseModel& response) {
-  if (!rotors) return {};
-  return [&rotors, &response](double hz) {
-    const auto Z = rotors->calc_stiffness(hz);
+AddedCoordinates project(const AddedStiffness& added, const ResponseModel& response) {
+  if (!added) return {};
+  return [&added, &response](double hz) {
+    const auto Z = added(hz);
     const MatrixXcd Phi = response.Phi.cast<std::complex<double>>(), Psi = response.Psi.cast<std::complex<double>>();
     const MatrixXcd ZPhi = Z * Phi, ZPsi = Z * Psi;
     return std::pair<MatrixXcd, MatrixXcd>(Phi.transpose() * ZPhi, Phi.transpose() * ZPsi);
@@ -297,7 +334,8 @@ struct DeckResponseSolver::Task {
   VectorXd hz;    ///< over frequency
   VectorXd natural;
   std::vector<OutputChoice> outputs;
-  std::shared_ptr<const RotorResponse> rotors;  ///< nullptr without
+  std::shared_ptr<const RotorResponse> rotors;    ///< nullptr without
+  std::shared_ptr<const FrequencyTables> tables;  ///< nullptr without
 };
 
 DeckResponseSolver::DeckResponseSolver(const records::DynamicDeck& deck, fe::ModelOptions model_options,
@@ -306,8 +344,13 @@ DeckResponseSolver::DeckResponseSolver(const records::DynamicDeck& deck, fe::Mod
 DeckResponseSolver::~DeckResponseSolver() = default;
 
 void DeckResponseSolver::prepare(const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
-  const std::array<int, 6> held{subcase.spc,     subcase.mpc,    subcase.suport1,
-                                subcase.preload, subcase.method, subcase.initial_temperature};
+  const std::array<int, 7> held{subcase.spc,
+                                subcase.mpc,
+                                subcase.suport1,
+                                subcase.preload,
+                                subcase.method,
+                                subcase.initial_temperature,
+                                subcase.material_temperature};
   if (prepared_ && held_ == held) return;
   prepared_.reset();
   held_ = held;
@@ -343,6 +386,7 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   task.outputs = choose_outputs(model, deck_, subcase, task.excitation, options_.grids, options_.with_listing, own);
   own.throw_if_errors();
   task.rotors = make_rotors(model, deck_, subcase, options_, task.damping.g, task.outputs, own);
+  task.tables = make_tables(model, deck_, options_, task.damping.g, own);
   records::ResponseSubcase result;
   result.id = std::max(subcase.id, 1);  // what stands above all subcases is the first, as in Nastran
   result.title = subcase.title;
@@ -360,16 +404,23 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
 void DeckResponseSolver::solve_by_modes(const Task& task, const records::DynamicSubcase& subcase,
                                         records::ResponseSubcase& result, Diagnostics& diagnostics) {
   const auto& model = prepared_->model;
-  const auto& [_, start, damping, grid, hz, natural, outputs, rotors] = task;
+  const auto& [_, start, damping, grid, hz, natural, outputs, rotors, tables] = task;
   Excitation excitation = task.excitation;
   excitation.residual = collect_unit_loads(model, deck_, diagnostics).F;
+  if (tables && tables->directions().cols() <= kMaxTableVectors) {
+    MatrixXd all(model.num_gdofs(), excitation.residual.cols() + tables->directions().cols());
+    all << excitation.residual, MatrixXd(tables->directions());
+    excitation.residual = all;
+  }
   diagnostics.throw_if_errors();
   if (damping.curve && excitation.D.cols() > 0) result.damped_motion = damping.is_relative ? "relative" : "absolute";
   const bool with_residuals = options_.residual_vectors.value_or(subcase.dynamics.resvec.value_or(
       deck_.find_param("RESVEC") == nullptr || deck_.find_param("RESVEC")->value[0] != 'N'));
   const auto solve_static = [&](const MatrixXd& F) { return prepared_->statics->solve(F, &diagnostics); };
-  const auto response = make_response_model(model, prepared_->modes, solve_static, excitation, start, damping,
-                                            with_residuals, diagnostics);
+  auto response = make_response_model(model, prepared_->modes, solve_static, excitation, start, damping, with_residuals,
+                                      diagnostics);
+  select_modes(deck_, subcase, prepared_->modes.num_left_out, response, diagnostics);
+  diagnostics.throw_if_errors();
   result.num_rigid = response.num_rigid;
   result.mode_hz.resize(response.num_dynamic());
   for (Eigen::Index j = 0; j < response.num_dynamic(); ++j) {
@@ -392,11 +443,12 @@ void DeckResponseSolver::solve_by_modes(const Task& task, const records::Dynamic
       diagnostics.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")), text,
                           "take more modes: beyond them there are residual vectors only");
     }
-    const auto of_rotors = project_rotors(rotors, response);
-    const auto spectrum = calc_spectrum(response, excitation, hz, diagnostics, of_rotors);
-    result.solution_error = calc_solution_error(response, spectrum, of_rotors);
-    recover(model, response, excitation, damping, outputs, spectrum, result);
-    if (options_.with_random)
+    const auto added = join_terms(rotors, tables);
+    const auto projected = project(added, response);
+    const auto spectrum = calc_spectrum(response, excitation, hz, diagnostics, projected);
+    result.solution_error = calc_solution_error(response, spectrum, projected);
+    recover(model, response, excitation, damping, outputs, spectrum, tables.get(), result);
+    if (options_.with_random && !tables)  // the integral by modes has poles of constant matrices
       sources_[result.id] =
           ModalSource(response, excitation, make_coordinate_maps(model, response, excitation, damping, outputs));
   }
@@ -408,18 +460,20 @@ void DeckResponseSolver::solve_by_modes(const Task& task, const records::Dynamic
 void DeckResponseSolver::solve_directly(const Task& task, const records::DynamicSubcase& subcase,
                                         records::ResponseSubcase& result, Diagnostics& diagnostics) const {
   const auto& model = prepared_->model;
-  const auto& [excitation, start, damping, grid, hz, natural, outputs, rotors] = task;
+  const auto& [excitation, start, damping, grid, hz, natural, outputs, rotors, tables] = task;
   const auto direct = make_direct_model(prepared_->system, deck_, subcase, excitation, damping);
-  const auto take = [&, &e = excitation, &d = damping, &o = outputs](const auto& motion) {
-    recover(model, e, d, o, motion, result);
+  const auto take = [&, &e = excitation, &d = damping, &o = outputs, &t = tables](const auto& motion) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(motion)>, MotionBlock<MatrixXcd>>)
+      recover(model, e, d, o, motion, t.get(), result);
+    else
+      recover(model, e, d, o, motion, result);
   };
   if (options_.is_over_time)
     result.solution_error = solve_history(model, direct, excitation, start,
                                           refine_times(deck_, excitation, grid, kMaxFactored, diagnostics), take);
   else
     result.solution_error =
-        solve_spectrum(model, direct, excitation, hz, take, diagnostics,
-                       rotors ? [&r = *rotors](double f) { return r.calc_stiffness(f); } : AddedStiffness());
+        solve_spectrum(model, direct, excitation, hz, take, diagnostics, join_terms(rotors, tables));
   report_residual(result.solution_error, deck_.locate({}), diagnostics);
 }
 

@@ -74,7 +74,7 @@ class DeckResponseSolver {
   const records::DynamicDeck& deck_;
   fe::ModelOptions model_options_;
   ResponseOptions options_;
-  std::optional<std::array<int, 6>> held_;
+  std::optional<std::array<int, 7>> held_;
   std::unique_ptr<Prepared> prepared_;
   std::map<int, ModalSource> sources_;
 };

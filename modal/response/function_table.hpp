@@ -5,12 +5,8 @@
 
 namespace bough::modal::response {
 
-/// Where a function jumps it has two values: before, after, or the mean of them.
-enum class Side { Before, After, Mean };
-
-/// y(x). Beyond its ends the table goes on along the line of its last two points (TABLED4: it keeps its end value).
-/// `reach`: points of the table within it of x count as x.
-double evaluate(const records::DynamicTable& table, double x, Side side = Side::Mean, double reach = 0);
+using records::evaluate;
+using records::Side;
 
 /// ζ at a frequency of G = 2 ζ, CRIT = ζ, Q = 1/(2 ζ); beyond its ends along the line of its last two points.
 double calc_damping_ratio(const records::DampingCurve& curve, double hz);

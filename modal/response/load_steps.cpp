@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
+#include "base/number_text.hpp"
 #include "modal/response/sampled_curve.hpp"
 #include "modal/tolerances.hpp"
 
@@ -25,12 +25,6 @@ constexpr int kMaxSilentCorners = 4;
 std::string describe(const ExcitationTerm& term) {
   return (term.card->kind == Kind::Tload1 ? "TLOAD1 " : "TLOAD2 ") + std::to_string(term.card->sid);
 }
-std::string format(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 /// Times of the points of a table, ascending.
 std::vector<double> list_points(const ExcitationTerm& term) {
   std::vector<double> times;
@@ -113,10 +107,10 @@ class Refiner {
     const bool is_short = term.card->t2 - term.card->t1 < kShortPulse * longest;  // divided, see list_corners
     if (steps >= kMinSteps || (is_short && term.card->excitation == Type::Force)) return;
     diagnostics_.warning("modal.coarse-steps", deck_.locate(term.card->at),
-                         describe(term) + ": " + format(steps) + " steps in a period of " +
-                             format(1 / std::abs(term.card->frequency_hz)) +
+                         describe(term) + ": " + show_number(steps) + " steps in a period of " +
+                             show_number(1 / std::abs(term.card->frequency_hz)) +
                              ": between the steps it is taken as a line, a motion as a spline",
-                         "take steps of " + format(1 / (20 * std::abs(term.card->frequency_hz))) + " or less");
+                         "take steps of " + show_number(1 / (20 * std::abs(term.card->frequency_hz))) + " or less");
   }
 
   void report_before_table(const ExcitationTerm& term) {
@@ -125,10 +119,10 @@ class Refiner {
     const double first = points.front(), end = grid_.time(grid_.time.size() - 1);
     if (!(first > 0) || calc_history(term, 0, Side::Mean, 0) == 0) return;
     diagnostics_.warning("modal.before-table", deck_.locate(term.card->at),
-                         describe(term) + ": until t = " + format(std::min(first, end)) + " table " +
+                         describe(term) + ": until t = " + show_number(std::min(first, end)) + " table " +
                              std::to_string(term.table_a->id) +
                              " has no points; on the line of its first two it begins with " +
-                             format(calc_history(term, 0, Side::Mean, 0)),
+                             show_number(calc_history(term, 0, Side::Mean, 0)),
                          "begin the table with two points of value 0, or a delayed one with 0. twice at its start");
   }
 
@@ -144,7 +138,7 @@ class Refiner {
     if (curve.num_corners <= kMaxSilentCorners) return;
     diagnostics_.warning("modal.motion-corners", deck_.locate(term.card->at),
                          describe(term) + " moves supports along a line with " + std::to_string(curve.num_corners) +
-                             " corners, the first at t = " + format(grid_.time(curve.first_corner)) +
+                             " corners, the first at t = " + show_number(grid_.time(curve.first_corner)) +
                              ": each is an impulse, from which the accelerations of stiff modes are large",
                          "give a smooth motion a point for each step, or take TYPE ACCE");
   }
@@ -193,8 +187,9 @@ class Refiner {
     if (next.first <= 0.01) return;
     diagnostics_.warning("modal.load-between-steps", deck_.locate(excitation_.forces.front().card->at),
                          "the loads have more than " + std::to_string(max_corners) +
-                             " corners between the steps; at t = " + format(next.second) +
-                             " a line between the steps misses " + format(100 * next.first) + " % of the largest value",
+                             " corners between the steps; at t = " + show_number(next.second) +
+                             " a line between the steps misses " + show_number(100 * next.first) +
+                             " % of the largest value",
                          "take steps as fine as the tables of the loads");
   }
 

@@ -36,7 +36,7 @@ std::vector<int> list_driven_grids(const fe::Model& model, const records::Dynami
 
 /// The tables of stresses of bars (axial stress) and solids (corners) need forces too.
 void add_listed_forces(const fe::Model& model, std::vector<OutputChoice>& outputs) {
-  static const std::set<std::string> cards{"CBAR", "CTETRA", "CPENTA", "CHEXA"};
+  static const std::set<std::string> cards{"CBAR", "CTETRA", "CPENTA", "CHEXA", "CPYRAM"};
   const auto stress =
       std::find_if(outputs.begin(), outputs.end(), [](const auto& output) { return output.quantity == "stress"; });
   if (stress == outputs.end()) return;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "fe/elements/spring_rows.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/statics/element_groups.hpp"
 #include "fe/statics/element_results.hpp"
@@ -161,8 +162,8 @@ void append_rows(const MatrixXd& more, MatrixXd& all) {
 class Recovery {
  public:
   Recovery(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
-           const std::vector<OutputChoice>& outputs)
-      : model_(model), excitation_(excitation), damping_(damping), outputs_(outputs) {}
+           const std::vector<OutputChoice>& outputs, const FrequencyTables* tables = nullptr)
+      : model_(model), excitation_(excitation), damping_(damping), outputs_(outputs), tables_(tables) {}
 
   template <class Values>
   void add(const VectorXd& x, const Apply<Values>& apply, const Values& p, records::ResponseSubcase& result) const {
@@ -177,7 +178,8 @@ class Recovery {
         for (const auto& group : list_groups(model_, output.ids, of_stress, damping_.is_over_time)) {
           auto& into = output.is_for_listing ? result.listed_forces : result.elements;
           if (is_first) into.push_back(begin_curves(group, output));
-          const Values values = apply([&](const MatrixXd& U) { return group.calc(U); }, 0);
+          Values values = apply([&](const MatrixXd& U) { return group.calc(U); }, 0);
+          if (!of_stress) add_table_forces(group, x, apply, values);
           append(Values(group.derive(values)), into[output.is_for_listing ? at_listed++ : at_element++]);
         }
         continue;
@@ -186,7 +188,7 @@ class Recovery {
       if (is_first)
         result.curves.push_back(
             {output.quantity, rows.dofs, {}, {}, output.is_phase, output.is_punched, output.is_printed});
-      append(calc<Values>(output.quantity, rows, apply, p), result.curves[at++]);
+      append(calc<Values>(output.quantity, rows, x, apply, p), result.curves[at++]);
     }
   }
 
@@ -212,7 +214,8 @@ class Recovery {
   }
 
   template <class Values>
-  Values calc(const std::string& quantity, const Rows& rows, const Apply<Values>& apply, const Values& p) const {
+  Values calc(const std::string& quantity, const Rows& rows, const VectorXd& x, const Apply<Values>& apply,
+              const Values& p) const {
     if (quantity != "spc_force") {
       const int order = quantity == "velocity" ? 1 : quantity == "acceleration" ? 2 : 0;
       return apply([&](const MatrixXd& U) { return pick_rows(model_, rows.gdofs, U); }, order);
@@ -224,13 +227,44 @@ class Recovery {
     const auto M = [&](const MatrixXd& U) { return pick(fe::calc_mass_times(model_, model_.mass_kind(), U)); };
     Values force = apply(K, 0) + apply(B, 1) + apply(M, 2) - pick(excitation_.F) * p;
     if (!damping_.is_over_time) force += times_i(apply(S, 0));
+    add_table_reactions(rows, x, apply, force);
     return force;
   }
+
+  /// Adds (k(f) - k) times the elongations of the springs of the group.
+  void add_table_forces(const ElementGroup& group, const VectorXd& hz, const Apply<MatrixXcd>& apply,
+                        MatrixXcd& values) const {
+    if (tables_ == nullptr || group.elements.empty()) return;
+    const auto num = values.rows() / static_cast<Eigen::Index>(group.elements.size());
+    for (std::size_t e = 0; e < group.elements.size(); ++e) {
+      const auto& element = *group.elements[e];
+      if (tables_->calc_force_change(element, 0).size() == 0) continue;
+      const MatrixXd S = dynamic_cast<const fe::SpringRows&>(element).calc_spring_rows();
+      const MatrixXcd stretch =
+          apply([&](const MatrixXd& U) -> MatrixXd { return S * U(element.gdofs(), Eigen::all); }, 0);
+      for (Eigen::Index i = 0; i < hz.size(); ++i)
+        values.col(i).segment(num * static_cast<Eigen::Index>(e), num) +=
+            tables_->calc_force_change(element, hz(i)).cwiseProduct(stretch.col(i));
+    }
+  }
+  void add_table_forces(const ElementGroup&, const VectorXd&, const Apply<MatrixXd>&, MatrixXd&) const {}
+
+  /// Adds Z(f) u at the supports.
+  void add_table_reactions(const Rows& rows, const VectorXd& hz, const Apply<MatrixXcd>& apply,
+                           MatrixXcd& force) const {
+    if (tables_ == nullptr) return;
+    MatrixXcd stretch = apply([&](const MatrixXd& U) -> MatrixXd { return tables_->directions().transpose() * U; }, 0);
+    for (Eigen::Index i = 0; i < hz.size(); ++i)
+      stretch.col(i) = stretch.col(i).cwiseProduct(tables_->calc_stiffness(hz(i))).eval();
+    force += pick_held(model_, MatrixXd(tables_->directions()), rows.gdofs) * stretch;
+  }
+  void add_table_reactions(const Rows&, const VectorXd&, const Apply<MatrixXd>&, MatrixXd&) const {}
 
   const fe::Model& model_;
   const Excitation& excitation_;
   const DampingChoice& damping_;
   const std::vector<OutputChoice>& outputs_;
+  const FrequencyTables* tables_;
 };
 
 template <class Values>
@@ -301,7 +335,7 @@ std::vector<CoordinateMap> make_coordinate_maps(const fe::Model& model, const Re
 
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
              const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const Spectrum& spectrum,
-             records::ResponseSubcase& result) {
+             const FrequencyTables* tables, records::ResponseSubcase& result) {
   const MatrixXd W = join_shapes(response);
   const Eigen::RowVectorXcd rate = 2i * std::numbers::pi * spectrum.hz.transpose().cast<std::complex<double>>();
   std::array<MatrixXcd, 3> z;
@@ -309,7 +343,7 @@ void recover(const fe::Model& model, const ResponseModel& response, const Excita
   z[1] = z[0] * rate.asDiagonal();
   z[2] = z[1] * rate.asDiagonal();
   const MatrixXcd p = spectrum.a.topRows(excitation.F.cols());
-  Recovery(model, excitation, damping, outputs).add<MatrixXcd>(spectrum.hz, make_apply(W, z), p, result);
+  Recovery(model, excitation, damping, outputs, tables).add<MatrixXcd>(spectrum.hz, make_apply(W, z), p, result);
 }
 
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
@@ -324,8 +358,8 @@ void recover(const fe::Model& model, const ResponseModel& response, const Excita
 
 void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
              const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXcd>& motion,
-             records::ResponseSubcase& result) {
-  add_motion(Recovery(model, excitation, damping, outputs), motion, result);
+             const FrequencyTables* tables, records::ResponseSubcase& result) {
+  add_motion(Recovery(model, excitation, damping, outputs, tables), motion, result);
 }
 
 void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,

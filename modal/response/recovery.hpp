@@ -5,6 +5,7 @@
 #include "formats/records/deck_response.hpp"
 #include "modal/response/coordinates.hpp"
 #include "modal/response/direct_model.hpp"
+#include "modal/response/frequency_tables.hpp"
 
 namespace bough::modal::response {
 
@@ -34,17 +35,17 @@ std::vector<CoordinateMap> make_coordinate_maps(const fe::Model& model, const Re
                                                 const Excitation& excitation, const DampingChoice& damping,
                                                 const std::vector<OutputChoice>& outputs);
 
-/// Solved by modes.
+/// Solved by modes. \param tables  springs and dampers over frequency; nullptr: none.
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
              const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const Spectrum& spectrum,
-             records::ResponseSubcase& result);
+             const FrequencyTables* tables, records::ResponseSubcase& result);
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
              const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const History& history,
              records::ResponseSubcase& result);
 /// Solved directly: the samples of `motion` after those that `result` has.
 void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
              const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXcd>& motion,
-             records::ResponseSubcase& result);
+             const FrequencyTables* tables, records::ResponseSubcase& result);
 void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
              const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXd>& motion,
              records::ResponseSubcase& result);

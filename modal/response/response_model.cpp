@@ -377,4 +377,43 @@ ResponseModel make_response_model(const fe::Model& model, const ModeBasis& modes
   return Maker(model, modes, solve, damping, diagnostics).make(excitation, start, with_residuals);
 }
 
+void select_modes(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase, int num_left_out,
+                  ResponseModel& r, Diagnostics& diagnostics) {
+  const int id = subcase.dynamics.modsel;
+  if (id == 0) return;
+  const auto at = deck.locate(subcase.find_command("MODSEL"));
+  const auto set = subcase.dynamics.sets.find(id);
+  if (set == subcase.dynamics.sets.end()) {
+    diagnostics.error("modal.missing-set", at,
+                      "MODSEL = " + std::to_string(id) + " names a SET that the case control does not define before it",
+                      "write SET " + std::to_string(id) + " = numbers of modes");
+    return;
+  }
+  std::vector<int> kept, dynamic;
+  int num_rigid = 0, num_normal = 0;
+  for (int j = 0; j < r.lambda.size(); ++j) {
+    const bool is_normal = j < r.num_normal;
+    if (is_normal && !set->second.contains(num_left_out + j + 1)) continue;
+    kept.push_back(j);
+    num_rigid += j < r.num_rigid;
+    num_normal += is_normal;
+    if (j < r.num_dynamic()) dynamic.push_back(j);
+  }
+  if (num_normal == 0)
+    diagnostics.error(
+        "modal.empty-selection", at,
+        "SET " + std::to_string(id) + " of MODSEL has no number of the " + std::to_string(r.num_normal) + " modes",
+        "correct the set, or compute more modes");
+  r.Phi = r.Phi(Eigen::all, kept).eval();
+  r.lambda = r.lambda(kept).eval();
+  r.P = r.P(kept, Eigen::all).eval();
+  r.D = r.D(kept, kept).eval();
+  r.S = r.S(kept, kept).eval();
+  r.damping_ratio = r.damping_ratio(kept).eval();
+  if (r.u0.size() > 0) r.u0 = r.u0(dynamic).eval();
+  if (r.v0.size() > 0) r.v0 = r.v0(dynamic).eval();
+  r.num_rigid = num_rigid;
+  r.num_normal = num_normal;
+}
+
 }  // namespace bough::modal::response

@@ -70,4 +70,9 @@ ResponseModel make_response_model(const fe::Model& model, const ModeBasis& modes
                                   const Excitation& excitation, const StartMotion& start, const DampingChoice& damping,
                                   bool with_residuals, Diagnostics& diagnostics);
 
+/// Leaves normal modes out of which MODSEL of the subcase does not name the number, residual vectors of all modes stay.
+/// Reports modal.missing-set and modal.empty-selection. \param num_left_out  modes below the first of `model`.
+void select_modes(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase, int num_left_out,
+                  ResponseModel& model, Diagnostics& diagnostics);
+
 }  // namespace bough::modal::response

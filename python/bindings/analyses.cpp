@@ -7,6 +7,7 @@
 #include "analysis/static/case_extremes.hpp"
 #include "analysis/static/static.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/nastran/loads_deck.hpp"
 #include "python/bindings/requests.hpp"
 
 namespace bough::python {
@@ -18,11 +19,14 @@ py::tuple reduce(const std::string& file, std::optional<int> modes, std::optiona
                  std::optional<std::string> name, std::optional<std::string> mass, std::optional<std::string> integrals,
                  std::optional<std::vector<double>> origin, std::optional<double> damping, std::optional<int> subcase,
                  Strings loads, Strings recover, Strings ignore, Strings matrices, bool strain_energy,
-                 const std::string& solver, const py::object& progress) {
+                 const std::string& loads_deck, int loads_set, const std::string& solver, const py::object& progress) {
   if (modes && *modes < 0)
     throw py::value_error("modes is a number of modes, 0 or more, not " + std::to_string(*modes));
   if (max_hz && !(*max_hz > 0)) throw py::value_error("max_hz is a frequency above 0, not " + std::to_string(*max_hz));
   if (origin && origin->size() != 3) throw py::value_error("origin has three numbers");
+  if (loads_set < 1 || loads_set > 99999988)
+    throw py::value_error("loads_set is the first of twelve load sets, 1 to 99999988, not " +
+                          std::to_string(loads_set));
   if (file.empty() && matrices.empty()) throw py::value_error("file is missing; only matrices do without");
   analysis::ReduceRequest request;
   request.file = file;
@@ -45,9 +49,11 @@ py::tuple reduce(const std::string& file, std::optional<int> modes, std::optiona
   request.solver = solver;
   records::FlexBody body;
   auto messages = run_request(file, progress, [&](PythonEvents& events) {
+    announce_output(loads_deck);
     body = analysis::reduce_body(
                request, [](const records::BodySpec&) {}, events)
                .body;
+    if (!loads_deck.empty()) write_output(loads_deck, nastran::write_loads_deck(body, loads_set));
   });
   return py::make_tuple(std::move(body), std::move(messages));
 }
@@ -275,7 +281,8 @@ void bind_analyses(py::module_& m) {
         py::arg("mass") = none, py::arg("integrals") = none, py::arg("origin") = none, py::arg("damping") = none,
         py::arg("subcase") = none, py::arg("loads") = Strings(), py::arg("recover") = Strings(),
         py::arg("ignore") = Strings(), py::arg("matrices") = Strings(), py::arg("strain_energy") = false,
-        py::arg("solver") = "", py::arg("progress") = none);
+        py::arg("loads_deck") = "", py::arg("loads_set") = nastran::kFirstInertialSet, py::arg("solver") = "",
+        py::arg("progress") = none);
   m.def("modes", &modes, py::arg("deck"), py::arg("number") = none, py::kw_only(), py::arg("min_hz") = none,
         py::arg("max_hz") = none, py::arg("buckling") = false, py::arg("no_check") = false, py::arg("solver") = "",
         py::arg("energies") = false, py::arg("meffmass") = 0, py::arg("subcase") = 0, py::arg("free") = false,

@@ -20,6 +20,7 @@
 #include "analysis/response/response.hpp"
 #include "analysis/run/run.hpp"
 #include "cli/verbs.hpp"
+#include "python/bindings/plot_style.hpp"
 #include "python/bindings/requests.hpp"
 #include "report/svg_plot.hpp"
 
@@ -164,6 +165,26 @@ py::tuple check(const std::string& file, Strings set, int subcase, bool free, co
 }
 
 /// Arrays and lists of words by path, as in the file of `compare -o`.
+py::dict make_comparison_dict(records::Comparison comparison) {
+  py::dict d;
+  const auto get_name = [](const std::string& path) { return py::str(path.starts_with('/') ? path.substr(1) : path); };
+  for (auto& array : comparison.arrays) {
+    if (array.values.cols() == 1)
+      d[get_name(array.path)] = give(Eigen::VectorXd(array.values.col(0)));
+    else
+      d[get_name(array.path)] = give(std::move(array.values));
+  }
+  for (const auto& [path, words] : comparison.words) d[get_name(path)] = words;
+  return d;
+}
+
+/// The integrals of one body by method.
+py::dict compare_body(const records::FlexBody& body) {
+  records::Comparison comparison;
+  run_exclusive(body.name, [&] { comparison = analysis::make_comparison({}, analysis::check_integrals(body)); });
+  return make_comparison_dict(std::move(comparison));
+}
+
 py::tuple compare(Strings files, const std::string& mass, bool refinement, const std::string& test,
                   const std::string& deck, const std::string& tam, int sensors, const py::object& progress) {
   if (test.empty() && (tam != "serep" || !deck.empty())) throw py::value_error("tam and deck go with test");
@@ -174,16 +195,7 @@ py::tuple compare(Strings files, const std::string& mass, bool refinement, const
   auto messages = run_request(request.files.empty() ? "" : request.files.front(), progress, [&](PythonEvents& events) {
     comparison = analysis::make_comparison(request, analysis::compare_files(request, events));
   });
-  py::dict d;
-  const auto get_name = [](const std::string& path) { return py::str(path.starts_with('/') ? path.substr(1) : path); };
-  for (auto& array : comparison.arrays) {
-    if (array.values.cols() == 1)
-      d[get_name(array.path)] = give(Eigen::VectorXd(array.values.col(0)));
-    else
-      d[get_name(array.path)] = give(std::move(array.values));
-  }
-  for (const auto& [path, words] : comparison.words) d[get_name(path)] = words;
-  return py::make_tuple(d, std::move(messages));
+  return py::make_tuple(make_comparison_dict(std::move(comparison)), std::move(messages));
 }
 
 /// Keeps what the commands print; the commands of the program that a session offers are functions in Python.
@@ -235,7 +247,8 @@ py::dict info(const std::string& file) {
         "description"_a = object.description, "dims"_a = object.dims);
     objects.append(one);
   }
-  put(d, "attributes"_a = attributes, "objects"_a = objects, "events"_a = make_events(answer.events));
+  put(d, "attributes"_a = attributes, "objects"_a = objects, "events"_a = make_events(answer.events),
+      "faults"_a = answer.faults);
   return d;
 }
 
@@ -243,7 +256,13 @@ py::dict info(const std::string& file) {
 py::tuple export_file(const std::string& file, const std::string& to, const std::string& output, Strings channels,
                       bool ascii, bool moving, const std::string& fields, Strings ignore, int every,
                       std::vector<double> window, double scale, const std::string& follow, Strings bodies, Strings set,
-                      const std::string& units, int fmi, int id) {
+                      const std::string& units, int fmi, int id, const std::string& inertia,
+                      const std::string& ge_order, int digits, int unit, const std::string& vendor, int first_point) {
+  demand_word("inertia", inertia, {"6x1", "3x3"});
+  demand_word("ge_order", ge_order, {"mode", "component"});
+  demand_word("vendor", vendor, {"nx", "msc"});
+  if (digits < 6 || digits > 17) throw py::value_error("digits is 6 to 17, not " + std::to_string(digits));
+  if (unit < 0 || first_point < 0) throw py::value_error("unit and first_point are numbers above 0, or 0: chosen");
   analysis::ExportRequest request{.file = file,
                                   .output = output,
                                   .format = to,
@@ -254,7 +273,8 @@ py::tuple export_file(const std::string& file, const std::string& to, const std:
                                   .ignore_cards = std::move(ignore)};
   request.moving = {every, std::move(window), scale, follow, std::move(bodies)};
   request.fmu = {fmi, std::move(channels), std::move(set), units};
-  request.component.id = id;
+  request.component = {id, unit, vendor, first_point};
+  request.body = {inertia, ge_order, digits};
   if (analysis::is_written_format(to) && output.empty()) throw py::value_error("export to " + to + " needs an output");
   analysis::ExportAnswer answer;
   auto messages = run_request(file, py::none(), [&](PythonEvents& events) {
@@ -269,7 +289,9 @@ py::tuple export_file(const std::string& file, const std::string& to, const std:
 py::tuple plot(Strings files, Strings sensors, Strings labels, Strings points, const std::string& title,
                const std::string& x_label, const std::string& y_label, const std::string& kind, const std::string& x,
                bool psd, bool spectrum, bool difference, bool subplots, const std::string& srs,
-               const std::string& output) {
+               const std::string& output, Strings inputs, Strings outputs, int per_rev, std::vector<double> window,
+               int segment, const std::string& srs_part, std::vector<double> srs_range, double q, bool log_x,
+               bool log_y, std::optional<double> y_min, std::optional<double> y_max) {
   analysis::PlotRequest request;
   request.files = std::move(files);
   request.sensors = std::move(sensors);
@@ -286,6 +308,9 @@ py::tuple plot(Strings files, Strings sensors, Strings labels, Strings points, c
   request.curves.difference = difference;
   request.curves.subplots = subplots;
   request.curves.srs = srs;
+  set_style({std::move(inputs), std::move(outputs), per_rev, std::move(window), segment, srs_part, std::move(srs_range),
+             q, log_x, log_y, y_min, y_max},
+            request);
   analysis::PlotAnswer answer;
   std::string svg;
   auto messages =
@@ -609,6 +634,7 @@ void bind_commands(py::module_& m) {
   m.def("compare", &compare, py::arg("files"), py::kw_only(), py::arg("mass") = "", py::arg("refinement") = false,
         py::arg("test") = "", py::arg("deck") = "", py::arg("tam") = "serep", py::arg("sensors") = 0,
         py::arg("progress") = none);
+  m.def("compare_body", &compare_body, py::arg("body"), "The integrals of a body by method.");
   m.def("edit", &edit, py::arg("file"), py::arg("commands"), py::arg("output") = "");
   m.def("info", &info, py::arg("file"));
   m.def("export", &export_file, py::arg("file"), py::arg("to"), py::arg("output") = "", py::kw_only(),
@@ -616,11 +642,16 @@ void bind_commands(py::module_& m) {
         py::arg("fields") = "large", py::arg("ignore") = no_words, py::arg("every") = 1,
         py::arg("window") = std::vector<double>(), py::arg("scale") = 1.0, py::arg("follow") = "",
         py::arg("bodies") = no_words, py::arg("set") = no_words, py::arg("units") = "", py::arg("fmi") = 3,
-        py::arg("id") = 0);
+        py::arg("id") = 0, py::arg("inertia") = "6x1", py::arg("ge_order") = "mode", py::arg("digits") = 17,
+        py::arg("unit") = 0, py::arg("vendor") = "nx", py::arg("first_point") = 0);
   m.def("plot", &plot, py::arg("files"), py::arg("sensors") = no_words, py::kw_only(), py::arg("labels") = no_words,
         py::arg("points") = no_words, py::arg("title") = "", py::arg("x_label") = "", py::arg("y_label") = "",
         py::arg("kind") = "", py::arg("x") = "", py::arg("psd") = false, py::arg("spectrum") = false,
-        py::arg("difference") = false, py::arg("subplots") = false, py::arg("srs") = "", py::arg("output") = "");
+        py::arg("difference") = false, py::arg("subplots") = false, py::arg("srs") = "", py::arg("output") = "",
+        py::arg("inputs") = no_words, py::arg("outputs") = no_words, py::arg("per_rev") = 0,
+        py::arg("window") = std::vector<double>(), py::arg("segment") = 256, py::arg("srs_part") = "maximax",
+        py::arg("srs_range") = std::vector<double>(), py::arg("q") = 10.0, py::arg("log_x") = false,
+        py::arg("log_y") = false, py::arg("y_min") = py::none(), py::arg("y_max") = py::none());
   m.def("report", &make_report, py::arg("files"), py::arg("output") = "", py::kw_only(), py::arg("channels") = no_words,
         py::arg("title") = "", py::arg("progress") = none);
   m.def("flx", &make_flx, py::arg("bodies"), py::arg("output") = "", py::kw_only(),

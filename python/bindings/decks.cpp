@@ -4,6 +4,7 @@
 #include "analysis/listing/listing_files.hpp"
 #include "analysis/matrices/matrices.hpp"
 #include "analysis/split/split.hpp"
+#include "formats/export/response_text.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/response_file.hpp"
 #include "python/bindings/requests.hpp"
@@ -28,7 +29,8 @@ py::tuple matrices(const std::string& deck, std::vector<int> loads, bool no_kg, 
 /// The bytes of the HDF5 file, and the messages.
 py::tuple solve_response(const std::string& deck, bool is_over_time, std::vector<int> grids, bool direct, bool modal,
                          int number, std::optional<double> max_hz, bool no_residuals, int subcase, bool free,
-                         const std::string& mass, Strings ignore, const std::string& f06, const std::string& op2,
+                         const std::string& mass, Strings ignore, bool linear, const std::string& csv,
+                         const std::string& punch, const std::string& f06, const std::string& op2,
                          const py::object& progress) {
   const analysis::ListingFiles listing{f06, op2};
   if (direct && (modal || number > 0 || max_hz || no_residuals))
@@ -43,15 +45,18 @@ py::tuple solve_response(const std::string& deck, bool is_over_time, std::vector
   request.is_transient = is_over_time;
   request.is_direct = direct;
   request.is_modal = modal;
+  request.is_linear = linear;
   request.no_residuals = no_residuals;
   request.grids = std::move(grids);
   request.has_listing = !listing.empty();
   std::string image;
   auto messages = run_request(deck, progress, [&](PythonEvents& events) {
-    announce_outputs({f06, op2});
+    announce_outputs({csv, punch, f06, op2});
     const auto answer = analysis::solve_deck_response(request, events);
     if (!answer.failures.is_empty()) answer.failures.throw_all(events.get_messages());
     image = hdf5::make_response_image(answer.response);
+    if (!csv.empty()) write_output(csv, exports::make_response_csv(answer.response));
+    if (!punch.empty()) write_output(punch, exports::make_punch_text(answer.response));
     if (answer.listing) analysis::write_listings(listing, *answer.listing);
   });
   return py::make_tuple(py::bytes(image), std::move(messages));
@@ -77,18 +82,21 @@ py::tuple split(const std::string& deck, int parts, const std::string& along, St
   analysis::SplitAnswer answer;
   auto messages =
       run_request(deck, progress, [&](PythonEvents& events) { answer = analysis::split_deck(request, events); });
-  py::list made, frequencies;
+  py::list made, frequencies, deflections;
   for (auto& part : answer.parts) {
     py::dict one;
-    put(one, "name"_a = part.name, "parent"_a = part.parent, "node"_a = part.node, "elements"_a = part.num_elements,
-        "grids"_a = part.num_grids, "mass"_a = part.mass,
+    put(one, "name"_a = part.name, "parent"_a = part.parent, "node"_a = part.node, "joined_grids"_a = part.num_joined,
+        "elements"_a = part.num_elements, "grids"_a = part.num_grids, "mass"_a = part.mass,
         "body"_a = check ? py::cast(std::move(part.body)) : py::none());
     made.append(one);
   }
   for (const auto& frequency : answer.frequencies)
     frequencies.append(py::make_tuple(frequency.whole_hz, frequency.parts_hz));
+  for (const auto& deflection : answer.deflections)
+    deflections.append(py::make_tuple(deflection.load, deflection.deflection, deflection.error));
   py::dict d;
-  put(d, "mass"_a = answer.mass, "parts"_a = made, "frequencies"_a = frequencies, "files"_a = list_texts(answer.files));
+  put(d, "mass"_a = answer.mass, "parts"_a = made, "frequencies"_a = frequencies, "deflections"_a = deflections,
+      "files"_a = list_texts(answer.files));
   return py::make_tuple(d, std::move(messages));
 }
 
@@ -113,9 +121,9 @@ void bind_decks(py::module_& m) {
   m.def("solve_response", &solve_response, py::arg("deck"), py::arg("is_over_time"), py::kw_only(),
         py::arg("grids") = std::vector<int>(), py::arg("direct") = false, py::arg("modal") = false,
         py::arg("number") = 0, py::arg("max_hz") = none, py::arg("no_residuals") = false, py::arg("subcase") = 0,
-        py::arg("free") = false, py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("f06") = "",
-        py::arg("op2") = "", py::arg("progress") = none,
-        "The bytes of the file of bough frequency or bough transient.");
+        py::arg("free") = false, py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("linear") = false,
+        py::arg("csv") = "", py::arg("punch") = "", py::arg("f06") = "", py::arg("op2") = "",
+        py::arg("progress") = none, "The bytes of the file of bough frequency or bough transient.");
   m.def("split", &split, py::arg("deck"), py::kw_only(), py::arg("parts") = 0, py::arg("along") = "path",
         py::arg("planes") = Strings(), py::arg("elements") = Strings(), py::arg("grids") = std::vector<int>(),
         py::arg("interface") = "rigid", py::arg("name") = "", py::arg("modes") = 10, py::arg("check") = true,

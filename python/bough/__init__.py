@@ -90,8 +90,11 @@ def reduce(file="", **options):
     "lumped", "consistent"), integrals ("exact", ...), origin, damping, subcase, solver; in addition to those of the
     file: loads=["41:2", "tip=41:123", "set:7", "temperature:8"], ignore=[card, ...], recover=[kind, ...],
     strain_energy, matrices=["model.op4", "K=k.mtx"] of another program, with which the file may be missing. Words that
-    are alone need no list. progress(stage) is called on the way.
+    are alone need no list. loads_deck: file of the twelve inertial loads as cards for another FE program, in load sets
+    from loads_set on; compare(body) is the report of the mass integrals. progress(stage) is called on the way.
     """
+    if "loads_deck" in options:
+        options["loads_deck"] = _os.fspath(options["loads_deck"])
     for name in ("loads", "recover", "ignore", "matrices"):
         if name in options:
             options[name] = [str(word) for word in _list(options[name])]
@@ -150,7 +153,8 @@ def frequency(deck, **options):
     """Frequency and random response of a deck (SOL 108, 111) as reader.File in memory: curves by path.
 
     Options as of `bough frequency`: grids=[41, ...], direct, modal, number, max_hz, no_residuals, subcase, free, mass,
-    ignore; f06, op2: files of the deck's output requests. found["subcases/1/displacement/real"] has a row per frequency and a column per row of its "dofs".
+    ignore; csv, punch: files of the curves; f06, op2: files of the deck's output requests.
+    found["subcases/1/displacement/real"] has a row per frequency and a column per row of its "dofs".
     """
     return _solve_response(deck, False, options)
 
@@ -158,6 +162,7 @@ def frequency(deck, **options):
 def transient(deck, **options):
     """Transient response of a deck (SOL 109, 112) as reader.File in memory; options and paths as of `frequency`.
 
+    linear: a deck of nonlinear transient response (SOL 129, 99, 159) is solved linearly.
     found["subcases/1/displacement/value"] has a row per time.
     """
     return _solve_response(deck, True, options)
@@ -167,7 +172,9 @@ def _solve_response(deck, is_over_time, options):
     for name in ("grids", "ignore"):
         if name in options:
             options[name] = _list(options[name])
-    for name in ("f06", "op2"):
+    if "linear" in options and not is_over_time:
+        raise TypeError("frequency() has no option linear; transient() has")
+    for name in ("csv", "punch", "f06", "op2"):
         if name in options:
             options[name] = _os.fspath(options[name])
     image, _ = _bough.solve_response(_os.fspath(deck), is_over_time, **options)
@@ -179,8 +186,8 @@ def split(deck, *, parts=0, along="path", planes=(), elements=(), grids=(), inte
     """A deck cut into several bodies: what `bough split` writes, as a dict; nothing is written.
 
     "files": {name: text} of a deck and a body file for each part, the system file last; "parts": a dict each with name,
-    parent, node, elements, grids, mass and (with check) its reduced "body"; "frequencies": (of the deck, of the parts)
-    in Hz; "mass". Cut by one of parts, planes=["x=2.5"], elements=["property:3", "1-200"], grids=[11, 21].
+    parent, node, joined_grids, elements, grids, mass and (with check) its reduced "body"; "frequencies": (of the deck,
+    of the parts) in Hz; "deflections": (static load, largest deflection, error of the parts); "mass". Cut by one of parts, planes=["x=2.5"], elements=["property:3", "1-200"], grids=[11, 21].
     """
     found, _ = _bough.split(_os.fspath(deck), parts=parts, along=along, planes=_words(planes),
                             elements=_words(elements), grids=_list(grids), interface=interface, name=name, modes=modes,
@@ -246,11 +253,16 @@ def check(file, *, parameters=None, subcase=0, free=False, mass="deck", ignore=(
 def compare(*files, mass="", refinement=False, test="", deck="", tam="serep", sensors=0, progress=None):
     """Two bodies or modes files, the integrals of one body, or with refinement=True three bodies of finer meshes.
 
+    The one body may be a FlexBody: what `bough reduce --integrals-report` prints.
     test: a universal file; then the modes of the one file against its shapes at the measured DOFs, by the test-analysis
     model tam "serep", "guyan" or "irs" (the last two of `deck`), or its frequency response against measured functions.
     sensors: places for this number of sensors on the one model. Arrays and lists of names by path, as in the file of
     `bough compare -o`: found["mac"], found["cross_orthogonality"], found["functions/frac"], found["dofs"].
     """
+    if len(files) == 1 and isinstance(files[0], _bough.FlexBody):
+        if mass or refinement or test or deck or sensors:
+            raise ValueError("a FlexBody is compared with no other file; save() it for these options")
+        return _bough.compare_body(files[0])
     found, _ = _bough.compare(_paths(files), mass=_os.fspath(mass), refinement=refinement, test=_os.fspath(test),
                               deck=_os.fspath(deck), tam=tam, sensors=sensors, progress=progress)
     return found
@@ -274,7 +286,8 @@ def info(file):
 
 
 def export(file, to, output="", *, channels=(), ascii=False, moving=False, fields="large", ignore=(), every=1,
-           window=(), scale=1.0, follow="", bodies=(), parameters=None, units="", fmi=3, id=0):
+           window=(), scale=1.0, follow="", bodies=(), parameters=None, units="", fmi=3, id=0,
+           inertia="6x1", ge_order="mode", digits=17, unit=0, vendor="nx", first_point=0):
     """A file in the format `to` of another program: "csv", "vtu", "bdf", "gltf", ...; options as of `bough export`.
 
     Gives its text (bytes of gltf, op4 and flat), and writes it where `output` is given. The formats pvd, mat, fmu and
@@ -283,12 +296,15 @@ def export(file, to, output="", *, channels=(), ascii=False, moving=False, field
     made, _, _ = _bough.export(_os.fspath(file), to, _os.fspath(output), channels=_words(channels), ascii=ascii,
                                moving=moving, fields=fields, ignore=_list(ignore), every=every, window=_list(window),
                                scale=scale, follow=follow, bodies=_paths(bodies), set=_make_settings(parameters),
-                               units=units, fmi=fmi, id=id)
+                               units=units, fmi=fmi, id=id, inertia=inertia, ge_order=ge_order, digits=digits,
+                               unit=unit, vendor=vendor, first_point=first_point)
     return made if to in ("gltf", "op4", "flat") else made.decode("utf-8")
 
 
 def plot(files, sensors=(), *, labels=(), points=(), title="", x_label="", y_label="", kind="", x="", psd=False,
-         spectrum=False, difference=False, subplots=False, srs="", output=""):
+         spectrum=False, difference=False, subplots=False, srs="", output="", inputs=(), outputs=(), per_rev=0,
+         window=(), segment=256, srs_part="maximax", srs_range=(), q=10.0, log_x=False, log_y=False, y_min=None,
+         y_max=None):
     """Curves of results, campaigns, responses and linear models, as `bough plot` draws them: {"plots", "svg", "csv"}.
 
     Each of plots has title, x_label, y_label and curves with label, x, y. The SVG is written where `output` is given.
@@ -296,7 +312,10 @@ def plot(files, sensors=(), *, labels=(), points=(), title="", x_label="", y_lab
     plots, svg, csv, _ = _bough.plot(_paths(files), _words(sensors), labels=_list(labels), points=_paths(points),
                                      title=title, x_label=x_label, y_label=y_label, kind=kind, x=x, psd=psd,
                                      spectrum=spectrum, difference=difference, subplots=subplots, srs=srs,
-                                     output=_os.fspath(output))
+                                     output=_os.fspath(output), inputs=_words(inputs), outputs=_words(outputs),
+                                     per_rev=per_rev, window=_list(window), segment=segment, srs_part=srs_part,
+                                     srs_range=_list(srs_range), q=q, log_x=log_x, log_y=log_y, y_min=y_min,
+                                     y_max=y_max)
     return {"plots": plots, "svg": svg, "csv": csv}
 
 

@@ -43,7 +43,8 @@ def reduce(file: _Path = "", *, modes: int | None = ..., max_hz: float | None = 
            name: str | None = ..., mass: str | None = ..., integrals: str | None = ...,
            origin: Sequence[float] | None = ..., damping: float | None = ..., subcase: int | None = ...,
            loads: str | Sequence[str] = ..., recover: str | Sequence[str] = ..., ignore: str | Sequence[str] = ...,
-           matrices: _Path | Sequence[_Path] = ..., strain_energy: bool = ..., solver: str = ...,
+           matrices: _Path | Sequence[_Path] = ..., strain_energy: bool = ...,
+           loads_deck: _Path = ..., loads_set: int = ..., solver: str = ...,
            progress: Callable[[str], object] | None = ...) -> FlexBody: ...
 def modes(deck: _Path, number: int | None = None, *, min_hz: float | None = None, max_hz: float | None = None,
           buckling: bool = False, no_check: bool = False, solver: str = "", energies: bool = False, meffmass: int = 0,
@@ -58,12 +59,14 @@ def matrices(deck: _Path, *, loads: int | Sequence[int] = (), no_kg: bool = Fals
              progress: Callable[[str], object] | None = None) -> reader.File: ...
 def frequency(deck: _Path, *, grids: int | Sequence[int] = ..., direct: bool = ..., modal: bool = ...,
               number: int = ..., max_hz: float | None = ..., no_residuals: bool = ..., subcase: int = ...,
-              free: bool = ..., mass: str = ..., ignore: str | Sequence[str] = ..., f06: _Path = ...,
-              op2: _Path = ..., progress: Callable[[str], object] | None = ...) -> reader.File: ...
+              free: bool = ..., mass: str = ..., ignore: str | Sequence[str] = ..., csv: _Path = ...,
+              punch: _Path = ..., f06: _Path = ..., op2: _Path = ...,
+              progress: Callable[[str], object] | None = ...) -> reader.File: ...
 def transient(deck: _Path, *, grids: int | Sequence[int] = ..., direct: bool = ..., modal: bool = ...,
               number: int = ..., max_hz: float | None = ..., no_residuals: bool = ..., subcase: int = ...,
-              free: bool = ..., mass: str = ..., ignore: str | Sequence[str] = ..., f06: _Path = ...,
-              op2: _Path = ..., progress: Callable[[str], object] | None = ...) -> reader.File: ...
+              free: bool = ..., mass: str = ..., ignore: str | Sequence[str] = ..., linear: bool = ...,
+              csv: _Path = ..., punch: _Path = ..., f06: _Path = ..., op2: _Path = ...,
+              progress: Callable[[str], object] | None = ...) -> reader.File: ...
 def split(deck: _Path, *, parts: int = 0, along: str = "path", planes: str | Sequence[str] = (),
           elements: str | Sequence[str] = (), grids: int | Sequence[int] = (), interface: str = "rigid",
           name: str = "", modes: int = 10, check: bool = True, subcase: int = 0, ignore: str | Sequence[str] = (),
@@ -78,7 +81,7 @@ def select(body: FlexBody | _Path, system: _Path | Sequence[_Path] | None = None
            progress: Callable[[str], object] | None = None) -> tuple[Any, dict[str, Any]]: ...
 def check(file: _Path, *, parameters: Mapping[str, float] | None = None, subcase: int = 0, free: bool = False,
           mass: str = "deck", ignore: str | Sequence[str] = ()) -> dict[str, Any]: ...
-def compare(*files: _Path, mass: _Path = "", refinement: bool = False, test: _Path = "", deck: _Path = "",
+def compare(*files: _Path | FlexBody, mass: _Path = "", refinement: bool = False, test: _Path = "", deck: _Path = "",
             tam: str = "serep", sensors: int = 0, progress: Callable[[str], object] | None = None) -> dict[str, Any]: ...
 def edit(file: _Path, commands: str | Sequence[str], output: _Path = "") -> dict[str, Any]: ...
 def info(file: _Path) -> dict[str, Any]: ...
@@ -86,11 +89,15 @@ def export(file: _Path, to: str, output: _Path = "", *, channels: str | Sequence
            moving: bool = False, fields: str = "large", ignore: str | Sequence[str] = (), every: int = 1,
            window: Sequence[float] = (), scale: float = 1.0, follow: str = "", bodies: _Path | Sequence[_Path] = (),
            parameters: Mapping[str, float] | None = None, units: str = "", fmi: int = 3,
-           id: int = 0) -> str | bytes: ...
+           id: int = 0, inertia: str = "6x1", ge_order: str = "mode", digits: int = 17, unit: int = 0,
+           vendor: str = "nx", first_point: int = 0) -> str | bytes: ...
 def plot(files: _Path | Sequence[_Path], sensors: str | Sequence[str] = (), *, labels: str | Sequence[str] = (),
          points: _Path | Sequence[_Path] = (), title: str = "", x_label: str = "", y_label: str = "", kind: str = "",
          x: str = "", psd: bool = False, spectrum: bool = False, difference: bool = False, subplots: bool = False,
-         srs: str = "", output: _Path = "") -> dict[str, Any]: ...
+         srs: str = "", output: _Path = "", inputs: str | Sequence[str] = (), outputs: str | Sequence[str] = (),
+         per_rev: int = 0, window: Sequence[float] = (), segment: int = 256, srs_part: str = "maximax",
+         srs_range: Sequence[float] = (), q: float = 10.0, log_x: bool = False, log_y: bool = False,
+         y_min: float | None = None, y_max: float | None = None) -> dict[str, Any]: ...
 def report(files: _Path | Sequence[_Path], output: _Path = "", *, channels: str | Sequence[str] = (), title: str = "",
            progress: Callable[[str], object] | None = None) -> str: ...
 def flx(bodies: _Path | Sequence[_Path], output: _Path = "", *, body_ids: int | Sequence[int] = 1,

@@ -205,7 +205,8 @@ def reduce(file: str = "", *, modes: int | None = None, max_hz: float | None = N
            name: str | None = None, mass: str | None = None, integrals: str | None = None,
            origin: Sequence[float] | None = None, damping: float | None = None, subcase: int | None = None,
            loads: Sequence[str] = [], recover: Sequence[str] = [], ignore: Sequence[str] = [],
-           matrices: Sequence[str] = [], strain_energy: bool = False, solver: str = "",
+           matrices: Sequence[str] = [], strain_energy: bool = False, loads_deck: str = "",
+           loads_set: int = 101, solver: str = "",
            progress: Callable[[str], object] | None = None) -> tuple[FlexBody, list[Message]]: ...
 def modes(deck: str, number: int | None = None, *, min_hz: float | None = None, max_hz: float | None = None,
           buckling: bool = False, no_check: bool = False, solver: str = "", energies: bool = False, meffmass: int = 0,
@@ -221,7 +222,8 @@ def matrices(deck: str, *, loads: Sequence[int] = [], no_kg: bool = False, subca
 def solve_response(deck: str, is_over_time: bool, *, grids: Sequence[int] = [], direct: bool = False,
                    modal: bool = False, number: int = 0, max_hz: float | None = None, no_residuals: bool = False,
                    subcase: int = 0, free: bool = False, mass: str = "deck", ignore: Sequence[str] = [],
-                   f06: str = "", op2: str = "", progress: Callable[[str], object] | None = None) -> tuple[bytes, list[Message]]: ...
+                   linear: bool = False, csv: str = "", punch: str = "", f06: str = "", op2: str = "",
+                   progress: Callable[[str], object] | None = None) -> tuple[bytes, list[Message]]: ...
 def split(deck: str, *, parts: int = 0, along: str = "path", planes: Sequence[str] = [], elements: Sequence[str] = [],
           grids: Sequence[int] = [], interface: str = "rigid", name: str = "", modes: int = 10, check: bool = True,
           subcase: int = 0, ignore: Sequence[str] = [],
@@ -237,6 +239,7 @@ def check(file: str, *, set: Sequence[str] = [], subcase: int = 0, free: bool = 
           ignore: Sequence[str] = []) -> tuple[dict[str, Any], list[Message]]: ...
 def compare(files: Sequence[str], *, mass: str = "", refinement: bool = False, test: str = "", deck: str = "",
             tam: str = "serep", sensors: int = 0, progress: Callable[[str], object] | None = None) -> tuple[dict[str, Any], list[Message]]: ...
+def compare_body(body: FlexBody) -> dict: ...
 def edit(file: str, commands: Sequence[str],
          output: str = "") -> tuple[str, str, bool, list[Message]]: ...
 def info(file: str) -> dict: ...
@@ -244,11 +247,15 @@ def export(file: str, to: str, output: str = "", *, channels: Sequence[str] = []
            moving: bool = False, fields: str = "large", ignore: Sequence[str] = [], every: int = 1,
            window: Sequence[float] = [], scale: float = 1.0, follow: str = "", bodies: Sequence[str] = [],
            set: Sequence[str] = [], units: str = "", fmi: int = 3,
-           id: int = 0) -> tuple[bytes, int, list[Message]]: ...
+           id: int = 0, inertia: str = "6x1", ge_order: str = "mode", digits: int = 17, unit: int = 0,
+           vendor: str = "nx", first_point: int = 0) -> tuple[bytes, int, list[Message]]: ...
 def plot(files: Sequence[str], sensors: Sequence[str] = [], *, labels: Sequence[str] = [], points: Sequence[str] = [],
          title: str = "", x_label: str = "", y_label: str = "", kind: str = "", x: str = "", psd: bool = False,
          spectrum: bool = False, difference: bool = False, subplots: bool = False,
-         srs: str = "", output: str = "") -> tuple[list[dict[str, Any]], str, str, list[Message]]: ...
+         srs: str = "", output: str = "", inputs: Sequence[str] = [], outputs: Sequence[str] = [], per_rev: int = 0,
+         window: Sequence[float] = [], segment: int = 256, srs_part: str = "maximax",
+         srs_range: Sequence[float] = [], q: float = 10.0, log_x: bool = False, log_y: bool = False,
+         y_min: float | None = None, y_max: float | None = None) -> tuple[list[dict[str, Any]], str, str, list[Message]]: ...
 def report(files: Sequence[str], output: str = "", *, channels: Sequence[str] = [], title: str = "",
            progress: Callable[[str], object] | None = None) -> tuple[str, list[Message]]: ...
 def flx(bodies: Sequence[str], output: str = "", *, body_ids: Sequence[int] = [1], integrals: str = "",

@@ -1,5 +1,5 @@
 import { el, get_css, get_style, make_button, make_file_name, on_theme, save_blob } from "./page_parts.js";
-import { find_index, find_nearest, format_number, make_log_ticks, make_step_ticks, make_ticks } from "./numbers.js";
+import { find_index, find_nearest, format_number, make_log_ticks, make_step_ticks, make_ticks, write_powers } from "./numbers.js";
 
 // Charts that share their window of x and their cursor.
 export class Link {
@@ -102,7 +102,7 @@ export class Chart {
     this.legend.replaceChildren();
     this.series.forEach((s, i) => {
       const value = el("span", { class: "value" });
-      const entry = el("button", { type: "button", "aria-pressed": "true", title: "Show or hide" }, el("canvas", { width: 28, height: 10 }), " " + (s.name ?? ""), value);
+      const entry = el("button", { type: "button", "aria-pressed": "true", title: "Show or hide" }, el("canvas", { width: 28, height: 10 }), " " + write_powers(s.name ?? ""), value);
       entry.addEventListener("click", () => {
         if (!this.hidden.delete(i)) this.hidden.add(i);
         this.show_hidden();
@@ -204,6 +204,7 @@ export class Chart {
     this.draw_marks(g);
     this.draw_guides(g);
     for (const s of this.get_visible()) s.points ? this.draw_points(g, s) : this.draw_curve(g, s);
+    this.write_marks(g);
     g.restore();
     this.draw_legend_strokes();
   }
@@ -259,35 +260,52 @@ export class Chart {
     }
     g.strokeRect(f.left + 0.5, f.top + 0.5, f.width, f.height);
     g.textAlign = "center";
-    g.fillText(this.x_label ?? "", f.left + f.width / 2, f.top + f.height + 35);
+    g.fillText(write_powers(this.x_label ?? ""), f.left + f.width / 2, f.top + f.height + 35);
     g.save();
     g.translate(13, f.top + f.height / 2);
     g.rotate(-Math.PI / 2);
-    g.fillText(this.y_label ?? "", 0, 0, f.height + 40);
+    g.fillText(write_powers(this.y_label ?? ""), 0, 0, f.height + 40);
     g.restore();
   }
 
   draw_marks(g) {
     g.save();
     g.strokeStyle = get_css("--mark");
-    g.fillStyle = get_css("--mark");
     g.setLineDash([3, 3]);
-    g.font = "11px " + get_css("--font");
-    g.textAlign = "left";
-    const free = new Array(3).fill(-Infinity);  // where each row of labels has room again
-    for (const mark of this.marks) {
-      const x = this.map_x(this.to_x(mark.x));
-      if (!(x >= this.frame.left && x <= this.frame.left + this.frame.width)) continue;
+    for (const x of this.find_marks().map(({ x }) => x)) {
       g.beginPath();
       g.moveTo(x, this.frame.top);
       g.lineTo(x, this.frame.top + this.frame.height);
       g.stroke();
-      const label = mark.label.length > 32 ? mark.label.slice(0, 31) + "…" : mark.label;
+    }
+    g.restore();
+  }
+
+  // Marks in the frame and where they are in it.
+  find_marks() {
+    const { left, width } = this.frame;
+    return this.marks.map(({ x, label }) => ({ x: this.map_x(this.to_x(x)), label })).filter(({ x }) => x >= left && x <= left + width);
+  }
+
+  // Labels of the marks over the curves, each with a rim in the colour of the ground.
+  write_marks(g) {
+    g.save();
+    g.strokeStyle = get_css("--panel");
+    g.lineWidth = 3;
+    g.lineJoin = "round";
+    g.fillStyle = get_css("--mark");
+    g.font = "11px " + get_css("--font");
+    g.textAlign = "left";
+    const free = new Array(3).fill(-Infinity);  // where each row of labels has room again
+    for (const { x, label: whole } of this.find_marks()) {
+      const label = whole.length > 32 ? whole.slice(0, 31) + "…" : whole;
       const size = g.measureText(label).width, row = free.findIndex((end) => x >= end);
       if (row < 0) continue;
       // Near the right end it stands before its line.
       const is_before = x + 3 + size > this.frame.left + this.frame.width && x - 3 - size >= Math.max(this.frame.left, free[row]);
-      g.fillText(label, is_before ? x - 3 - size : x + 3, this.frame.top + 11 + 13 * row);
+      const at = [is_before ? x - 3 - size : x + 3, this.frame.top + 11 + 13 * row];
+      g.strokeText(label, ...at);
+      g.fillText(label, ...at);
       free[row] = x + (is_before ? 3 : 6 + size);
     }
     g.restore();

@@ -1,6 +1,8 @@
 import { format_number } from "./numbers.js";
 import { unpack_column, unpack_floats, unpack_indices, unpack_shorts } from "./unpack.js";
 
+const kMaxSorted = 1e6;  // indices of faces whose edges are looked through for bars
+
 // A body as report/drawing.hpp writes it, and its points when its modes move.
 export class Drawing {
   constructor(json) {
@@ -35,6 +37,19 @@ export class Drawing {
       this.attachments = new Set([...this.ids.keys()].filter((k) => this.interface.has(this.ids[k]) || (this.ids[k] > 0 && !drawn.has(k))));
     }
     return this.attachments;
+  }
+
+  /** Edges that bound no face, as bars: they have the colour of the body. @returns {Uint32Array} */
+  find_lines() {
+    if (!this.lines) {
+      const count = this.xyz.length / 3, of_faces = new Set(), { triangles, edges } = this, lines = [];
+      const to_key = (a, b) => Math.min(a, b) * count + Math.max(a, b);
+      const is_large = triangles.length > kMaxSorted;
+      for (let i = 0; i < triangles.length && !is_large; i += 3) for (let c = 0; c < 3; ++c) of_faces.add(to_key(triangles[i + c], triangles[i + ((c + 1) % 3)]));
+      for (let i = 0; i < edges.length && !is_large; i += 2) if (!of_faces.has(to_key(edges[i], edges[i + 1]))) lines.push(edges[i], edges[i + 1]);
+      this.lines = Uint32Array.from(lines);
+    }
+    return this.lines;
   }
 
   /**
@@ -149,9 +164,25 @@ export class Drawing {
   }
 }
 
+/** Indices of the points that are farthest in each of 26 directions. @param {ArrayLike<number>} xyz */
+export function find_extremes(xyz) {
+  const found = new Set();
+  for (let code = 0; code < 27; ++code) {
+    const [a, b, c] = [(code % 3) - 1, (Math.floor(code / 3) % 3) - 1, Math.floor(code / 9) - 1];
+    let best = -1, most = -Infinity;
+    for (let k = 0; 3 * k < xyz.length; ++k) {
+      const reach = a * xyz[3 * k] + b * xyz[3 * k + 1] + c * xyz[3 * k + 2];
+      if (reach > most) [best, most] = [k, reach];
+    }
+    if (best >= 0) found.add(best);
+  }
+  return [...found];
+}
+
 // Corners of the box around points, three numbers each.
 export class Box {
   constructor() {
+    this.hull = [];  // points that are to be seen, three numbers each; empty: the corners
     this.low = [Infinity, Infinity, Infinity];
     this.high = [-Infinity, -Infinity, -Infinity];
   }
@@ -163,6 +194,7 @@ export class Box {
     });
   }
   add_points(points) {
+    this.hull = points;
     for (let i = 0; i < points.length; i += 3) this.add(points[i], points[i + 1], points[i + 2]);
   }
   get_middle() {

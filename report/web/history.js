@@ -1,6 +1,6 @@
 import { Chart, Link } from "./chart.js";
 import { el, make_button, make_check, make_file_name, make_select } from "./page_parts.js";
-import { find_index, format_number, label_frequency } from "./numbers.js";
+import { find_index, format_number, label_frequency, write_powers } from "./numbers.js";
 import { calc_spectrum } from "./spectrum.js";
 import { thin_time, unpack_column, unpack_time } from "./unpack.js";
 
@@ -26,6 +26,7 @@ export class Run {
     for (const channel of data.channels) {
       const [, name, what] = /^\/hinges\/(.+)\/(q|qdot)$/.exec(channel.path) ?? [], labels = kFreeHinge[what];
       if (data.hinges && name && !drawn.has(name) && labels?.length === channel.columns.length) channel.columns.forEach((column, i) => (column.label = labels[i]));
+      if (/\/reaction_(force|moment)$/.test(channel.path) && channel.columns.length === 3) channel.columns.forEach((column, i) => (column.label = "xyz"[i]));
     }
   }
   get_time(channel) {
@@ -225,7 +226,7 @@ export class HistoryView {
       }
       const cells = [low, high, high - low, sum / count, Math.sqrt(square / count)].map((v) => el("td", {}, format_number(v)));
       const own = this.run.runs && channel.columns.length === 1 ? `${name} ${name_column(channel, i)}` : name;
-      return el("tr", {}, el("td", { class: "text" }, own), el("td", { class: "text" }, channel.columns[i].unit), ...cells, el("td", {}, String(count)));
+      return el("tr", {}, el("td", { class: "text" }, own), el("td", { class: "text" }, write_powers(channel.columns[i].unit)), ...cells, el("td", {}, String(count)));
     }));
     const range = window ? `${format_number(window[0])} to ${format_number(window[1])}` : "the whole time";
     this.statistics.replaceChildren(el("caption", {}, "In the window: " + range), el("thead", {}, head), el("tbody", {}, ...rows));

@@ -122,7 +122,7 @@ export class ModesView {
     this.drawing.deform(Array.from({ length: first + parts.length }, (_, j) => (j >= first ? parts[j - first] : 0)), scale);
     const { xyz, points, triangles, edges, ghosts } = this.drawing;
     const has_faces = triangles.length > 0;
-    const body = { points, size: this.drawing.size, triangles, edges, ghosts, color: get_css("--body"), by_level: this.color_by === 0, dots: !has_faces };
+    const body = { points, size: this.drawing.size, triangles, edges, lines: this.drawing.find_lines(), ghosts, color: get_css("--body"), by_level: this.color_by === 0, dots: !has_faces };
     const size_of = this.drawing.size, swing = scale > 0 ? scale : 1;
     if (this.drawing.ids.length > 0)
       Object.assign(body, { ids: this.drawing.ids, describe: (k) => this.drawing.describe(k, "", `displacement ${format_number(size_of[k] / swing, 4)}`) });

@@ -1,5 +1,5 @@
 import { Chart } from "./chart.js";
-import { Box, Drawing } from "./drawing.js";
+import { Box, Drawing, find_extremes } from "./drawing.js";
 import { label_time, with_unit } from "./history.js";
 import { find_index, format_number } from "./numbers.js";
 import { el, get_css, get_style, make_button, make_check, make_color_bar, make_select, make_slider, make_swatch, save_blob } from "./page_parts.js";
@@ -161,19 +161,21 @@ export class MotionView {
   }
 
   find_box() {
-    const box = new Box();
+    const box = new Box(), hull = [];
     for (const body of this.bodies.filter((b) => b.is_drawn)) {
-      const own = new Box();
-      own.add_points(body.drawing.xyz);
+      const { xyz } = body.drawing, ends = find_extremes(xyz);
       for (const time of this.list_times(40)) {
         const { p, R } = this.place(body, time);
-        for (let corner = 0; corner < 8; ++corner) {
-          const q = turn(R, own.low.map((low, i) => ((corner >> i) & 1 ? own.high[i] : low)));
-          box.add(p[0] + q[0], p[1] + q[1], p[2] + q[2]);
+        for (const k of ends) {
+          const q = turn(R, [xyz[3 * k], xyz[3 * k + 1], xyz[3 * k + 2]]);
+          const at = p.map((v, i) => v + q[i]);
+          box.add(...at);
+          hull.push(...at);
         }
       }
     }
-    this.marks.extend(box);
+    hull.push(...this.marks.extend(box));
+    box.hull = hull.every(Number.isFinite) ? hull : [];
     return box;
   }
 
@@ -300,7 +302,7 @@ export class MotionView {
       const marked = this.has_node_marks ? d.find_attachments() : null;
       if (marked && marked.size > 0) nodes.push({ points: Float32Array.from([...marked].flatMap((k) => [...body.world.subarray(3 * k, 3 * k + 3)])), color: get_css("--mark"), dots: true });
       const pick = d.ids.length > 0 ? { body: body.name, ids: d.ids, marked, describe: (k) => d.describe(k, body.name + ", ", `displacement ${format_number(d.size[k] / (this.scale || 1), 4)}`) } : {};
-      (is_box ? boxes : things).push({ ...colors, ...pick, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
+      (is_box ? boxes : things).push({ ...colors, ...pick, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, lines: d.find_lines(), ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });
     this.viewer.marks = [...nodes, ...this.marks.make_things(places, this.time, size), ...(this.make_overlay?.(places, size) ?? [])];

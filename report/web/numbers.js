@@ -71,6 +71,9 @@ export function find_nearest(x, value) {
   return i === x.length || value - x[i - 1] < x[i] - value ? i - 1 : i;
 }
 
+// Powers of units as a picture shows them: "kg m^2/s" becomes "kg m²/s".
+export const write_powers = (text) => text.replace(/\^([234])/g, (_, digit) => "²³⁴"[digit - 2]);
+
 // "frequency [Hz]" for seconds or a time without a label.
 export function label_frequency(time_unit) {
   if (!time_unit || time_unit === "s" || time_unit === "T") return "frequency [Hz]";

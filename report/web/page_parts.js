@@ -1,4 +1,5 @@
 // Elements, controls, colours.
+import { write_powers } from "./numbers.js";
 
 // el("button", { class: "x", onclick: f }, "text", child): attributes, functions as listeners, children.
 export function el(tag, attributes = {}, ...children) {
@@ -56,7 +57,7 @@ export function make_color_bar() {
   const element = el("div", { class: "color-bar" }, what, el("div", { class: "ramp", "aria-hidden": "true" }), el("div", { class: "ends" }, low, middle, high));
   const update = (from, to, name, format) => {
     [low.textContent, middle.textContent, high.textContent] = [from, (from + to) / 2, to].map(format);
-    what.textContent = name;
+    what.textContent = write_powers(name);
   };
   return { element, update };
 }

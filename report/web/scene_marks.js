@@ -126,11 +126,13 @@ export class SceneMarks {
     return arrows;
   }
 
-  // Takes in what is fixed in ground; what is far off, as a planet, is left outside.
+  // Takes in what is fixed in ground, and returns it; what is far off, as a planet, is left outside.
   extend(box) {
-    const middle = box.get_middle(), near = 1.5 * box.get_diagonal();
+    const middle = box.get_middle(), near = 1.5 * box.get_diagonal(), taken = [];
     for (const place of [...this.sources.flatMap((a) => [a.at, a.towards]), ...this.sensors.map((s) => s.to)])
-      if (place && place.body < 0 && Math.hypot(...place.p.map((v, i) => v - middle[i])) < near) box.add(...place.p);
+      if (place && place.body < 0 && Math.hypot(...place.p.map((v, i) => v - middle[i])) < near) taken.push(...place.p);
+    for (let k = 0; k < taken.length; k += 3) box.add(taken[k], taken[k + 1], taken[k + 2]);
+    return taken;
   }
 
   make_things(places, time, size) {

@@ -67,7 +67,7 @@ const kSoftware = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 const kMaxPick = 14;  // pixels between a click and what it names
 
-// A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
+// A stage on which things are drawn: { points, size, triangles, edges, lines (edges in the colour), color, by_level, line_color }; marks stand before
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
 // has one colour, -1: `color`; with corner_levels each corner of a triangle. A thing with is_detail hides no node and is
 // left out while a large scene moves. Dragging turns, the right button or shift
@@ -140,17 +140,17 @@ export class Viewer {
     this.draw();
   }
 
-  // From where each corner of a box is seen, with some room for what moves out of it.
+  // From where each point of the hull, or each corner, of a box is seen, with some room for what moves out of it.
   find_distance(box) {
     const { back, right, up } = this.get_axes();
     const half = box.low.map((low, i) => (box.high[i] >= low ? (box.high[i] - low) / 2 : 0.5));
     const [fx, fy] = this.get_lens();
     let distance = 0;
-    for (let corner = 0; corner < 8; ++corner) {
-      const p = half.map((h, i) => ((corner >> i) & 1 ? h : -h));
-      distance = Math.max(distance, fx * Math.abs(dot(right, p)) + dot(back, p), fy * Math.abs(dot(up, p)) + dot(back, p));
-    }
-    return 1.25 * distance;
+    const take = (p) => (distance = Math.max(distance, fx * Math.abs(dot(right, p)) + dot(back, p), fy * Math.abs(dot(up, p)) + dot(back, p)));
+    const { hull } = box, middle = box.get_middle();
+    for (let k = 0; k + 2 < hull.length; k += 3) take([hull[k] - middle[0], hull[k + 1] - middle[1], hull[k + 2] - middle[2]]);
+    for (let corner = 0; corner < 8 && hull.length === 0; ++corner) take(half.map((h, i) => ((corner >> i) & 1 ? h : -h)));
+    return 1.15 * distance;
   }
 
   // The angle holds for the shorter side.
@@ -293,6 +293,7 @@ export class Viewer {
     if (has_faces) draw(gl.TRIANGLES, thing.triangles, color, thing.by_level, true, 0);
     if (thing.edges?.length > 0)
       draw(gl.LINES, thing.edges, has_faces ? to_rgba(get_css("--edge"), (thing.alpha ?? 1) * 0.6) : color, !has_faces && thing.by_level, false, thing.lift ?? 1e-4);
+    if (has_faces && thing.lines?.length > 0) draw(gl.LINES, thing.lines, color, thing.by_level, false, 2 * (thing.lift ?? 1e-4));
     if (thing.ghosts?.length > 0) draw(gl.LINES, thing.ghosts, to_rgba(get_css("--ghost"), 0.6), false, false, 0);
     if (thing.dots) draw(gl.POINTS, null, color, thing.by_level, false, 2e-4);
   }

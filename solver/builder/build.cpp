@@ -1,4 +1,5 @@
 #include "solver/builder/build.hpp"
+#include "solver/builder/levels.hpp"
 
 #include <algorithm>
 
@@ -200,7 +201,20 @@ void collect_left_out(const records::SystemSpec& spec, const FlexMap& flex, Syst
 }
 }  // namespace
 
+namespace {
+System draft_one(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics);
+}  // namespace
+
 System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics) {
+  System system = draft_one(spec, flex, diagnostics);
+  const auto has_levels = [](const records::BodyRecord& r) { return !r.levels.empty(); };
+  if (diagnostics.num_errors() == 0 && std::any_of(spec.bodies.begin(), spec.bodies.end(), has_levels))
+    build_variants(spec, flex, system, diagnostics);
+  return system;
+}
+
+namespace {
+System draft_one(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics) {
   System system;
   Tree& tree = system.tree;
   system.gravity.uniform = spec.simulation.gravity;
@@ -311,5 +325,6 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
   if (diagnostics.num_errors() == 0) check_shapes(spec, system, flex, diagnostics);
   return system;
 }
+}  // namespace
 
 }  // namespace bough::solver

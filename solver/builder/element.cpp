@@ -1,12 +1,15 @@
 // [[force]] with a type: names to markers and bodies.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "solver/builder/build.hpp"
 #include "solver/forces/bushing.hpp"
 #include "solver/forces/central_gravity.hpp"
 #include "solver/forces/contact.hpp"
 #include "solver/forces/drag.hpp"
+#include "solver/forces/faces.hpp"
 #include "solver/forces/spring.hpp"
 #include "solver/forces/sunlight.hpp"
 #include "solver/text/names.hpp"
@@ -208,16 +211,20 @@ class ElementBuilder {
 
   std::unique_ptr<const ForceElement> build_drag() {
     demand_finite({r_.area, r_.coefficient, r_.density, r_.wind.sum(), r_.normal.sum()});
+    const bool has_table = !r_.density_table.empty();
     if (!(r_.area >= 0) || !(r_.coefficient >= 0) || !(r_.density >= 0))
       refuse("has a negative area, coefficient or density", "give values of at least zero");
     DragElement::Law law;
-    law.half_density_area = 0.5 * r_.density * r_.coefficient * r_.area;
+    law.half_density_area = 0.5 * (has_table ? 1 : r_.density) * r_.coefficient * r_.area;
     if (r_.normal.norm() > 0) law.normal = r_.normal.normalized();
     law.wind_W = r_.wind;
-    if ((r_.scale_height != 0 || r_.altitude != 0 || !r_.spin.isZero(0)) && r_.planet.empty())
-      refuse("has scale_height, altitude or spin and no planet", "name a gravity_central with a radius");
+    if ((r_.scale_height != 0 || r_.altitude != 0 || has_table || !r_.spin.isZero(0)) && r_.planet.empty())
+      refuse("has scale_height, altitude, density_table or spin and no planet", "name a gravity_central with a radius");
+    if (has_table) law.table = find_density_table();
     if (const ForceElementRecord* planet = find_planet()) {
-      if (!(r_.scale_height > 0)) refuse("has a planet without scale_height", "give the scale height of the density");
+      if (!has_table && !(r_.scale_height > 0))
+        refuse("has a planet without scale_height", "give the scale height of the density, or a density_table");
+      law.has_planet = true;
       law.scale_height = r_.scale_height;
       law.altitude = r_.altitude;
       law.radius = planet->equator;
@@ -225,7 +232,80 @@ class ElementBuilder {
       law.spin_W = r_.spin;
     }
     if (r_.from.body == "ground") refuse("acts on ground", "name a body");
+    if (r_.has_faces) {
+      law.half_density_area = 0.5 * (has_table ? 1 : r_.density) * r_.coefficient;
+      return std::make_unique<DragOnFaces>(r_.name, find_faces(), law, r_.is_one_sided);
+    }
     return std::make_unique<DragElement>(r_.name, add_marker(r_.from, {true, false}), law);
+  }
+
+  /// Faces of the elements of the body, all of surfaces if none is named. Without faces: reported.
+  MeshFaces find_faces() {
+    MeshFaces made;
+    made.body = find_body(r_.from.body);
+    if (made.body < 0) return made;  // reported, or ground
+    const auto is_it = [&](const records::BodyRecord& body) { return body.name == r_.from.body; };
+    const auto record = std::find_if(context_.spec.bodies.begin(), context_.spec.bodies.end(), is_it);
+    const auto flex = context_.flex.find(record->file);
+    if (flex == context_.flex.end()) {
+      refuse("has elements, and body " + quote(r_.from.body) + " is rigid", "give area and normal");
+      return made;
+    }
+    const records::FlexBody& body = flex->second;
+    const int n = tree_[made.body].num_modes();
+    std::set<int> missing(r_.faces.begin(), r_.faces.end());
+    std::map<int, int> row_of;  // of the grids of the mesh
+    for (const auto& block : body.mesh.blocks) {
+      const int count = block.type.starts_with("tri") ? 3 : block.type.starts_with("quad") ? 4 : 0;
+      for (Eigen::Index e = 0; count > 0 && e < block.connectivity.rows(); ++e) {
+        const int id = block.element_id[static_cast<size_t>(e)];
+        if (!r_.faces.empty() && missing.erase(id) == 0) continue;
+        MeshFaces::Face face;
+        face.count = count;
+        bool has_grids = true;
+        for (int i = 0; i < count; ++i) {
+          const int grid = block.connectivity(e, i);
+          has_grids = has_grids && grid >= 0;
+          if (has_grids)
+            face.corner[static_cast<size_t>(i)] = row_of.emplace(grid, static_cast<int>(row_of.size())).first->second;
+        }
+        if (has_grids) made.faces.push_back(face);
+      }
+    }
+    if (!missing.empty())
+      refuse("has element " + std::to_string(*missing.begin()) + ", which is no shell of body " + quote(r_.from.body),
+             "name CQUAD4, CTRIA3 and other surfaces of its deck");
+    else if (made.faces.empty())
+      refuse("has elements, and the file of body " + quote(r_.from.body) + " has no shells", "give area and normal");
+    made.p.resize(3, static_cast<Eigen::Index>(row_of.size()));
+    made.shapes.setZero(3 * static_cast<Eigen::Index>(row_of.size()), n);
+    for (const auto& [grid, row] : row_of) {
+      made.p.col(row) = body.mesh.grid_xyz.row(grid).transpose();
+      const int node = body.find_node(body.mesh.grid_id[static_cast<size_t>(grid)]);
+      if (body.mesh_phi.size() > 0)
+        made.shapes.middleRows<3>(3 * row) = body.mesh_phi.middleRows<3>(3 * grid).leftCols(n).cast<double>();
+      else if (node >= 0)
+        made.shapes.middleRows<3>(3 * row) = body.phi[static_cast<size_t>(node)].topRows<3>().leftCols(n);
+    }
+    return made;
+  }
+
+  /// Density over altitude; empty: reported.
+  DensityTable find_density_table() {
+    if (!find_table(r_.density_table)) return {};
+    const auto named = [&](const records::FunctionRecord& record) { return record.name == r_.density_table; };
+    const auto record = std::find_if(context_.spec.functions.begin(), context_.spec.functions.end(), named);
+    const std::string table = "has the density_table " + quote(r_.density_table);
+    if (record->x.size() < 2) {
+      refuse(table + " of one point", "give two altitudes or more");
+    } else if (record->interpolation == "cubic") {
+      refuse(table + ", which is cubic", "leave interpolation out: the logarithm of the density is linear");
+    } else if (std::any_of(record->y.begin(), record->y.end(), [](double rho) { return !(rho > 0); })) {
+      refuse(table + " with a density that is not above zero", "end the table at the last density above zero");
+    } else {
+      return {record->x, record->y};
+    }
+    return {};
   }
 
   /// The gravity_central of the key planet; nullptr: none is named, or reported.
@@ -251,7 +331,7 @@ class ElementBuilder {
       refuse("has a negative area or pressure", "give values of at least zero");
     if (!(r_.specular >= 0) || !(r_.diffuse >= 0) || !(r_.specular + r_.diffuse <= 1))
       refuse("has reflectivities below zero or of a sum above one", "give shares of the light");
-    if (!(r_.normal.norm() > 0) || !(r_.sun.norm() > 0))
+    if ((!r_.has_faces && !(r_.normal.norm() > 0)) || !(r_.sun.norm() > 0))
       refuse("has a normal or a sun without direction", "give three numbers, not all zero");
     if (!(r_.sun_size > 0) || r_.sun_size > 1)
       refuse("has a sun_size that is no angular radius", "give radians, as 0.00465");
@@ -261,10 +341,11 @@ class ElementBuilder {
     panel.area = r_.area;
     panel.specular = r_.specular;
     panel.diffuse = r_.diffuse;
-    panel.normal = r_.normal.normalized();
+    if (!r_.has_faces) panel.normal = r_.normal.normalized();
     panel.sun_W = r_.sun.normalized();
     panel.is_one_sided = r_.is_one_sided;
     if (const ForceElementRecord* planet = find_planet()) panel.shadow = {planet->centre, planet->equator, r_.sun_size};
+    if (r_.has_faces) return std::make_unique<SunOnFaces>(r_.name, find_faces(), panel);
     return std::make_unique<SolarPressure>(r_.name, add_marker(r_.from, {true, false}), panel);
   }
 

@@ -165,10 +165,8 @@ class Resolver {
     e.description = "line of sight";
     if (!r.relative_to.empty() && r.relative_to != "ground" && r.relative_to != "inertial") {
       e.relative_to = find_body(r.relative_to);
-      if (e.relative_to == kAbsent)
-        error(r, "sensor.unknown-body", "is relative to the unknown body '" + r.relative_to + "'",
-              suggest_among(r.relative_to, bodies_, "bodies"));
-      e.description += " relative to body " + r.relative_to;
+      resolve_reference(r, e);
+      e.description += " relative to " + name_reference(r);
     }
     for (const auto& given : r.terms) {
       SightTerm term;
@@ -244,29 +242,58 @@ class Resolver {
       known.insert(known.end(), {"inertial", "body"});
       if (e.frame == kAbsent)
         error(r, "sensor.bad-frame", "has the unknown frame '" + frame + "'", suggest_among(frame, known, "frames"));
+      if (e.frame >= 0 && system_.is_valid(e.frame))
+        e.frame_node = find_reference_node(r, e.frame, frame, r.frame_node);
     }
     if (!r.relative_to.empty() && r.relative_to != "ground" && r.relative_to != "inertial") {
       e.relative_to = find_body(r.relative_to);
-      if (e.relative_to == kAbsent)
-        error(r, "sensor.unknown-body", "is relative to the unknown body '" + r.relative_to + "'",
-              suggest_among(r.relative_to, bodies_, "bodies"));
+      resolve_reference(r, e);
     }
     e.from_turning = r.from_turning;
     if (r.is_orbital && e.relative_to >= 0) resolve_orbit(r, e);
     e.description = std::string(get_kind(r.type).name) + " of node " + std::to_string(r.node) + " of body " + r.body;
     const SensorOf of = get_kind(r.type).of;
-    const std::string other = std::string(r.is_orbital ? "the LVLH frame of " : "") + "body " + r.relative_to;
+    const std::string other = (r.is_orbital ? "the LVLH frame of " : "") + name_reference(r);
     if (of == SensorOf::Attitude) e.description += e.relative_to >= 0 ? " against " + other : "";
     if (of == SensorOf::Instrument) e.description += ", in the sensor's axes";
     if (of != SensorOf::Point && of != SensorOf::Elastic) return;
     if (is_deflection(r.type))
       e.description += " from its undeformed place";
     else if (e.relative_to >= 0)
-      e.description += (r.from_turning ? " as seen from " : " minus that of the origin of ") + other;
+      e.description += (r.from_turning         ? " as seen from "
+                        : r.relative_node == 0 ? " minus that of the origin of "
+                                               : " minus that of ") +
+                       other;
     e.description += ", components in the " + (e.in_orbital_frame ? "LVLH frame of body " + r.relative_to
                                                : frame == "body"  ? "frame of body " + r.body
                                                : e.frame < 0      ? "inertial frame"
-                                                                  : "frame of body " + frame);
+                                                                  : "frame of " + name_node(frame, r.frame_node));
+  }
+
+  static std::string name_node(const std::string& body, int node) {
+    return (node == 0 ? "" : "node " + std::to_string(node) + " of ") + ("body " + body);
+  }
+  static std::string name_reference(const SensorRecord& r) { return name_node(r.relative_to, r.relative_node); }
+
+  /// Body and node of relative_to, whose body was looked up.
+  void resolve_reference(const SensorRecord& r, Sensor& e) {
+    if (e.relative_to == kAbsent)
+      error(r, "sensor.unknown-body", "is relative to the unknown body '" + r.relative_to + "'",
+            suggest_among(r.relative_to, bodies_, "bodies"));
+    if (e.relative_to >= 0 && system_.is_valid(e.relative_to))
+      e.relative_node = find_reference_node(r, e.relative_to, r.relative_to, r.relative_node);
+  }
+
+  /// Index of a node within a body; 0: the body itself, or reported.
+  int find_reference_node(const SensorRecord& r, int body, const std::string& name, int node) {
+    if (node == 0) return 0;
+    const int found = system_.find_node(body, node);
+    if (found >= 0) return found;
+    error(r, "sensor.unknown-node",
+          "is relative to, or has the frame of, node " + std::to_string(node) + ", which body '" + name +
+              "' does not have",
+          "use one of its output nodes, or the body without a node for its origin");
+    return 0;
   }
 
   void resolve_orbit(const SensorRecord& r, Sensor& e) {

@@ -35,6 +35,12 @@ struct MarkerInWorld {
 /// Motion of a marker, its node deformed, after calc_velocity. R_WM; v and w in W.
 MarkerInWorld calc_marker_in_world(const TreeData& data, const Tree& tree, int marker);
 
+/// State outside of the validity of an element.
+struct ValidityWarning {
+  const char* id = nullptr;  ///< nullptr: within it
+  std::string message, advice;
+};
+
 /// Where an element puts its loads.
 class Loads {
  public:
@@ -71,8 +77,8 @@ class ForceElement {
   virtual bool is_along_hinge() const { return false; }
   /// The function of time in it, or nullptr.
   virtual const TimeFunction* function() const { return nullptr; }
-  /// Message without time if the state is outside of the element's validity; empty within it.
-  virtual std::string describe_outside(const Tree&, const TreeData&) const { return {}; }
+  /// Returns a warning without time if the state is outside of the element's validity; without an id within it.
+  virtual ValidityWarning check_validity(const Tree&, const TreeData&) const { return {}; }
   /// Further channels of the results; none by default.
   virtual std::vector<ForceChannel> channels() const { return {}; }
   /// Adds -∂force/∂q and -∂force/∂u of the coordinates that it acts along, where they are not negative (num_u).

@@ -38,23 +38,29 @@ Eigen::Vector2d calc_contacts(const Shadow& shadow, const Vector3d& p_W, const V
   return {c - b - shadow.sun_size, c - b + shadow.sun_size};
 }
 
-ForceResult SolarPressure::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
-  const MarkerInWorld k = calc_marker_in_world(data, tree, marker_);
-  if (panel_.shadow.radius > 0 && (k.p - panel_.shadow.centre_W).norm() < panel_.shadow.radius) {
-    std::ostringstream what;
-    what << "force '" << name() << "': its panel is inside the planet at t = " << data.t;
-    throw ComputationError("run.inside-planet", {}, what.str(),
-                           "look at the orbit, and at centre and radius of the gravity_central");
-  }
-  Vector3d n = k.R * panel_.normal;
-  double cosine = n.dot(panel_.sun_W);
-  if (cosine < 0 && !panel_.is_one_sided) {
+void demand_outside(const Shadow& shadow, const Vector3d& p_W, const std::string& force, double t) {
+  if (!(shadow.radius > 0) || (p_W - shadow.centre_W).norm() >= shadow.radius) return;
+  std::ostringstream message;
+  message << "force '" << force << "': its panel is inside the planet at t = " << t;
+  throw ComputationError("run.inside-planet", {}, message.str(),
+                         "look at the orbit, and at centre and radius of the gravity_central");
+}
+
+Vector3d calc_panel_force(const SolarPressure::Panel& panel, Vector3d n, double area) {
+  double cosine = n.dot(panel.sun_W);
+  if (cosine < 0 && !panel.is_one_sided) {
     n = -n;
     cosine = -cosine;
   }
+  return -panel.pressure * area * std::max(0.0, cosine) *
+         ((1 - panel.specular) * panel.sun_W + 2 * (panel.specular * cosine + panel.diffuse / 3) * n);
+}
+
+ForceResult SolarPressure::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
+  const MarkerInWorld k = calc_marker_in_world(data, tree, marker_);
+  demand_outside(panel_.shadow, k.p, name(), data.t);
   const double light = calc_sunlight(panel_.shadow, k.p, panel_.sun_W);
-  const Vector3d f = -panel_.pressure * light * panel_.area * std::max(0.0, cosine) *
-                     ((1 - panel_.specular) * panel_.sun_W + 2 * (panel_.specular * cosine + panel_.diffuse / 3) * n);
+  const Vector3d f = calc_panel_force(panel_, k.R * panel_.normal, light * panel_.area);
   if (loads != nullptr) loads->add_wrench(marker_, f, Vector3d::Zero());
   ForceResult result;
   for (int i = 0; i < 3; ++i) result.values[static_cast<size_t>(i)] = f[i];

@@ -47,4 +47,9 @@ class SolarPressure final : public ForceElement {
   Panel panel_;
 };
 
+/// Force on a flat panel of this area with the unit normal n, in full light; in W.
+Vector3d calc_panel_force(const SolarPressure::Panel& panel, Vector3d n_W, double area);
+/// Throws ComputationError "run.inside-planet" if p is inside the planet.
+void demand_outside(const Shadow& shadow, const Vector3d& p_W, const std::string& force, double t);
+
 }  // namespace bough::solver

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "solver/functions/function_parameters.hpp"
+#include "solver/functions/kepler.hpp"
 #include "solver/functions/table.hpp"
 #include "solver/text/names.hpp"
 
@@ -195,6 +196,8 @@ std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, 
     made = make_wave(r, run, p);
   } else if (r.type == "random") {
     if (check_table(r, p)) made = make_wave(r, run, p);
+  } else if (r.type == "kepler") {
+    made = make_kepler(p);
   } else if (r.type == "expression") {
     made = make_time_expression(r, run, p);
   } else if (r.type == "sum" || r.type == "product") {

@@ -69,9 +69,7 @@ class CvodeStepper final : public Integrator {
     ode_.set_left_limit(left);
     BOUGH_DEMAND(CVodeSetStopTime(cvode_, t_stop) == CV_SUCCESS);
     // CVODE refuses a smallest step above the largest one.
-    double smallest = detail::kSmallestStep * (t_stop - t_);
-    if (options_.step > 0) smallest = std::min(smallest, 1e-3 * options_.step);
-    BOUGH_DEMAND(CVodeSetMinStep(cvode_, smallest) == CV_SUCCESS);
+    BOUGH_DEMAND(CVodeSetMinStep(cvode_, detail::calc_smallest_step(options_, t_stop - t_)) == CV_SUCCESS);
   }
 
   void step(double) override {

@@ -12,8 +12,6 @@ void Ode::calc_stage(double, const Eigen::Ref<const VectorXd>&, double, bool, Ei
 
 template <class Action>
 int GuardedOde::guard(double t, double* out, const Action& action) noexcept {
-  ++num_evaluations_;
-  pending_ = nullptr;
   const double time = std::min(t, left_limit_);
   try {
     Eigen::Map<VectorXd> result(out, ode_.size());
@@ -27,17 +25,15 @@ int GuardedOde::guard(double t, double* out, const Action& action) noexcept {
   return 1;
 }
 
+template <class Action>
+int GuardedOde::evaluate(double t, double* out, const Action& action) noexcept {
+  ++num_evaluations_;
+  pending_ = nullptr;
+  return guard(t, out, action);
+}
+
 int GuardedOde::project(double t, double* y) noexcept {
-  try {
-    Eigen::Map<VectorXd> state(y, ode_.size());
-    ode_.project(std::min(t, left_limit_), state);
-    if (state.allFinite()) return 0;
-    non_finite_ = true;
-    bad_time_ = t;
-  } catch (...) {
-    pending_ = std::current_exception();
-  }
-  return 1;
+  return guard(t, y, [&](double time, Eigen::Map<VectorXd>& state) { ode_.project(time, state); });
 }
 
 int GuardedOde::project_error(double* error) noexcept {
@@ -52,13 +48,13 @@ int GuardedOde::project_error(double* error) noexcept {
 }
 
 int GuardedOde::calc(double t, const double* y, double* y_dot) noexcept {
-  return guard(t, y_dot, [&](double time, Eigen::Map<VectorXd>& result) {
+  return evaluate(t, y_dot, [&](double time, Eigen::Map<VectorXd>& result) {
     ode_.calc_derivative(time, Eigen::Map<const VectorXd>(y, ode_.size()), result);
   });
 }
 
 int GuardedOde::calc_stage(double t, const double* y, double gamma_h, bool is_first, double* k) noexcept {
-  return guard(t, k, [&](double time, Eigen::Map<VectorXd>& result) {
+  return evaluate(t, k, [&](double time, Eigen::Map<VectorXd>& result) {
     ode_.calc_stage(time, Eigen::Map<const VectorXd>(y, ode_.size()), gamma_h, is_first, result);
   });
 }

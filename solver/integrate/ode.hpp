@@ -68,6 +68,8 @@ class GuardedOde {
  private:
   template <class Action>
   int guard(double t, double* result, const Action& action) noexcept;
+  template <class Action>
+  int evaluate(double t, double* result, const Action& action) noexcept;
 
   Ode& ode_;
   double left_limit_ = std::numeric_limits<double>::infinity();

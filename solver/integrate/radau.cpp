@@ -57,8 +57,7 @@ class RadauStepper final : public Integrator {
   void set_stop(double t_stop, double left) override {
     ode_.set_left_limit(left);
     t_stop_ = t_stop;
-    smallest_ = detail::kSmallestStep * (t_stop - t_);
-    if (options_.step > 0) smallest_ = std::min(smallest_, 1e-3 * options_.step);
+    smallest_ = detail::calc_smallest_step(options_, t_stop - t_);
   }
 
   void step(double) override {

@@ -18,6 +18,11 @@ double calc_error_norm(const StepperOptions& options, const VectorXd& y, const V
   return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(1, v.size())));
 }
 
+double calc_smallest_step(const StepperOptions& options, double left) {
+  const double smallest = 1e-13 * left;
+  return options.step > 0 ? std::min(smallest, 1e-3 * options.step) : smallest;
+}
+
 double guess_first_step(GuardedOde& ode, const StepperOptions& options, int order, double t, const VectorXd& y,
                         const Eigen::Ref<const VectorXd>& y_dot, double min_step, double max_step, VectorXd& stage,
                         VectorXd& stage_dot) {

@@ -33,6 +33,10 @@ struct LastStep {
 /// \pre from <= t <= to.
 bool copy_end_state(double t, const LastStep& step, Eigen::Ref<VectorXd> y);
 
+/// Smallest step [T] before a stop that is `left` away: a share of the way, or of the largest step. Without a bound
+/// methods creep up to a singularity in steps that no longer change t.
+double calc_smallest_step(const StepperOptions& options, double left);
+
 /// "steps of 1e-09 err by 3.2 tolerances", for a StepFailure.
 std::string describe_rejection(double step, double error);
 

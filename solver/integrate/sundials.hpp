@@ -10,9 +10,6 @@
 
 namespace bough::solver::detail {
 
-/// Share of a stretch between jumps: without a bound SUNDIALS creeps up to a singularity in steps that no longer change
-/// t.
-inline constexpr double kSmallestStep = 1e-13;
 /// Rejections of one step by the error test before it counts as stalled: at a kink of a force steps get ever shorter.
 inline constexpr int kMaxRejections = 40;
 

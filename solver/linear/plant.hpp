@@ -45,6 +45,8 @@ class Plant {
   /// at the operating point, and controllers' states are none of the plant's.
   explicit Plant(const System& system, bool is_open = false);
 
+  /// The system of the constructor.
+  const System& system() const { return system_; }
   /// Returns true if actuators keep their commands.
   bool is_open() const { return is_open_; }
   /// Number of independent displacements.

@@ -11,6 +11,9 @@ namespace bough::solver {
 namespace {
 
 constexpr double kClosed = 1e-12;
+/// Gaps, relative, up to which the present coordinates of the closing hinges are near: no other start is searched, of
+/// which a hinge with free rotations has 27.
+constexpr double kNearGap = 1e-3;
 constexpr int kMaxSteps = 100, kMaxStarts = 24;
 constexpr double kDependent = 1e-8;  // of the largest singular value
 /// Factor between the costs of two priorities: a coordinate of the higher one moves only if the others cannot close.
@@ -144,7 +147,7 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
                             LoopData& data) {
   Positions positions(loops, tree, t, tree_data, data);
   const VectorXd sizes = calc_step_sizes(tree), given = q;
-  positions.find_starts(given);
+  if (!(positions.calc(given) <= kNearGap)) positions.find_starts(given);
   const LoopData start = data;
   Assembly found;
   VectorXd best = given;

@@ -41,17 +41,27 @@ class HingeClosure final : public Closure {
     m.bias.head(num_rows()).noalias() = m.W.leftCols(num_rows()).transpose() * m.hinge.bias;
   }
 
-  // Rotations by thirds of a turn: one of them lies in the basin of the nearest pose.
+  // Rotations by thirds of a turn: one of them lies in the basin of the nearest pose. Translations have one basin.
   void find_start(const Matrix3d& R, const Vector3d& p, double* q) const override {
     ClosureMotion m;
     double best = -1;
     std::array<double, 7> trial{}, found{};
+    hinge_->set_neutral(trial.data());
+    HingeMotion neutral;
+    hinge_->calc_position(trial.data(), neutral);
+    std::array<int, 6> places{};
     int trials = 1;
-    for (int i = 0; i < hinge_->num_u(); ++i) trials *= 3;
+    for (int i = 0; i < hinge_->num_u(); ++i) {
+      places[static_cast<std::size_t>(i)] = neutral.H.col(i).tail<3>().isZero(0) ? 1 : 3;
+      trials *= places[static_cast<std::size_t>(i)];
+    }
     for (int k = 0; k < trials; ++k) {
       hinge_->set_neutral(trial.data());
       Vector6d turn = Vector6d::Zero();
-      for (int i = 0, left = k; i < hinge_->num_u(); ++i, left /= 3) turn[i] = 2.0 * (left % 3);
+      for (int i = 0, left = k; i < hinge_->num_u(); ++i) {
+        turn[i] = 2.0 * (left % places[static_cast<std::size_t>(i)]);
+        left /= places[static_cast<std::size_t>(i)];
+      }
       move(turn, trial.data());
       fit(R, p, trial.data(), m);
       const double error = calc_error(R, p, m.hinge).norm();

@@ -1,13 +1,21 @@
 // G by unit speeds: no response, no multiplier.
+#include <algorithm>
+#include <optional>
+
 #include "solver/loops/loops.hpp"
 
 namespace bough::solver {
 
 MatrixXd calc_dense_rows(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data) {
-  TreeData free = tree_data;
+  // A copy only where a coordinate is held: its column is that of the coordinate set free.
+  std::optional<TreeData> copy;
+  if (std::any_of(tree_data.mode.begin(), tree_data.mode.end(), [](HingeMode m) { return m != HingeMode::Free; })) {
+    copy = tree_data;
+    set_modes(tree, std::vector<HingeMode>(static_cast<size_t>(tree.num_u), HingeMode::Free), *copy);
+    calc_position(tree, tree_data.t, tree_data.q, *copy);
+  }
+  const TreeData& free = copy ? *copy : tree_data;
   LoopData own = data;
-  set_modes(tree, std::vector<HingeMode>(static_cast<size_t>(tree.num_u), HingeMode::Free), free);
-  calc_position(tree, tree_data.t, tree_data.q, free);
   calc_closure_positions(loops, tree, free, own);
   MatrixXd G = MatrixXd::Zero(get_gaps(loops, data).size(), tree.num_u);
   Sweep sweep = free.response;

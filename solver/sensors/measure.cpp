@@ -20,9 +20,13 @@ struct Observer {
   Vector3d w = Vector3d::Zero(), alpha = Vector3d::Zero();
 };
 
-Observer calc_observer(const Motion& motion, int body) {
+Observer calc_observer(const Motion& motion, int body, int node) {
   Observer o;
   if (body < 0) return o;
+  if (node > 0) {
+    const NodeMotion k = calc_node_motion(motion, body, node);
+    return {k.p_WK, k.v_WK, k.a_WK, k.w_WK, k.alpha_WK};
+  }
   const BodyState& s = motion.get_state(body);
   o.p = s.p_WBo;
   o.v.noalias() = s.R_WB * s.v_B;
@@ -76,9 +80,14 @@ Vector3d calc_relative(SensorType type, bool from_turning, const NodeMotion& k, 
   return k.a_WK - o.a - o.alpha.cross(p) - o.w.cross(o.w.cross(p)) - 2 * o.w.cross(v);
 }
 
-Vector3d turn_into(const Motion& motion, int frame, const Vector3d& value_W) {
-  if (frame < 0) return value_W;
-  return motion.get_state(frame).R_WB.transpose() * value_W;
+/// Axes of a body, or of one of its nodes, in W; body >= 0.
+Matrix3d calc_axes(const Motion& motion, int body, int node) {
+  return node > 0 ? calc_node_motion(motion, body, node).R_WK : motion.get_state(body).R_WB;
+}
+
+Vector3d turn_into(const Motion& motion, const Sensor& e, const Vector3d& value_W) {
+  if (e.frame < 0) return value_W;
+  return calc_axes(motion, e.frame, e.frame_node).transpose() * value_W;
 }
 
 void measure_attitude(const Sensor& e, const Matrix3d& R, double* out) {
@@ -144,22 +153,22 @@ void measure_modes(const Motion& motion, const Sensor& e, double* out) {
     result = motion.data.u.segment(tb.eta_dot_offset() + first, e.size);
 }
 
-/// Position and attitude of an optical node in A; W for A = -1.
-void calc_placement(const Motion& motion, int A, const SightTerm& term, Vector3d& p_AK, Matrix3d& R_AK) {
+/// Position and attitude of an optical node in A, the body or node of relative_to; W without.
+void calc_placement(const Motion& motion, const Sensor& e, const SightTerm& term, Vector3d& p_AK, Matrix3d& R_AK) {
   const NodeMotion k = calc_node_motion(motion, term.body, term.node);
   p_AK = k.p_WK;
   R_AK = k.R_WK;
-  if (A < 0) return;
-  const BodyState& s = motion.get_state(A);
-  p_AK = s.R_WB.transpose() * (k.p_WK - s.p_WBo);
-  R_AK = s.R_WB.transpose() * k.R_WK;
+  if (e.relative_to < 0) return;
+  const Matrix3d R_AW = calc_axes(motion, e.relative_to, e.relative_node).transpose();
+  p_AK = R_AW * (k.p_WK - calc_observer(motion, e.relative_to, e.relative_node).p);
+  R_AK = R_AW * k.R_WK;
 }
 
 void measure_sight(const Motion& motion, const Sensor& e, double* out) {
   Vector3d sum = Vector3d::Zero(), p;
   Matrix3d R;
   for (const SightTerm& term : e.terms) {
-    calc_placement(motion, e.relative_to, term, p, R);
+    calc_placement(motion, e, term, p, R);
     const Eigen::AngleAxisd turn(Matrix3d(R * term.R_AK.transpose()));
     sum += term.displacement * (p - term.p_AK) + term.rotation * (turn.angle() * turn.axis());
   }
@@ -169,7 +178,7 @@ void measure_sight(const Motion& motion, const Sensor& e, double* out) {
 }  // namespace
 
 void set_reference(const Motion& motion, Sensor& e) {
-  for (SightTerm& term : e.terms) calc_placement(motion, e.relative_to, term, term.p_AK, term.R_AK);
+  for (SightTerm& term : e.terms) calc_placement(motion, e, term, term.p_AK, term.R_AK);
 }
 
 Vector3d calc_euler_angles(const Matrix3d& R, const std::array<int, 3>& axes) {
@@ -203,7 +212,7 @@ void measure(const Motion& motion, const Sensor& e, double* out) {
         const Matrix3d R_WL = calc_orbital_axes(calc_orbital_observer(motion, e), e);
         return measure_attitude(e, R_WL.transpose() * R_WS, out);
       }
-      return measure_attitude(e, motion.get_state(e.relative_to).R_WB.transpose() * R_WS, out);
+      return measure_attitude(e, calc_axes(motion, e.relative_to, e.relative_node).transpose() * R_WS, out);
     }
     case SensorOf::Optics:
       return measure_sight(motion, e, out);
@@ -219,21 +228,22 @@ void measure(const Motion& motion, const Sensor& e, double* out) {
       Vector3d deflection, rotation;
       calc_node_deflection(motion, e.body, e.node, deflection, rotation);
       const Vector3d& value_B = e.type == SensorType::Deflection ? deflection : rotation;
-      Map<Vector3d>{out} =
-          e.frame == e.body ? value_B : turn_into(motion, e.frame, motion.get_state(e.body).R_WB * value_B);
+      Map<Vector3d>{out} = e.frame == e.body && e.frame_node == 0
+                               ? value_B
+                               : turn_into(motion, e, motion.get_state(e.body).R_WB * value_B);
       return;
     }
     case SensorOf::Point:
       if (e.orbit != nullptr) {
         const Observer o = calc_orbital_observer(motion, e);
         const Vector3d value = calc_relative(e.type, e.from_turning, calc_node_motion(motion, e.body, e.node), o);
-        Map<Vector3d>{out} = e.in_orbital_frame ? Vector3d(calc_orbital_axes(o, e).transpose() * value)
-                                                : turn_into(motion, e.frame, value);
+        Map<Vector3d>{out} =
+            e.in_orbital_frame ? Vector3d(calc_orbital_axes(o, e).transpose() * value) : turn_into(motion, e, value);
         return;
       }
-      Map<Vector3d>{out} = turn_into(motion, e.frame,
+      Map<Vector3d>{out} = turn_into(motion, e,
                                      calc_relative(e.type, e.from_turning, calc_node_motion(motion, e.body, e.node),
-                                                   calc_observer(motion, e.relative_to)));
+                                                   calc_observer(motion, e.relative_to, e.relative_node)));
       return;
   }
 }

@@ -1,8 +1,9 @@
 #pragma once
 /// \file Sensors: [[sensor]] of a system file, resolved once and evaluated without allocation.
 ///
-/// K is the node, B its body, A the body of relative_to (W without), F the frame of components (W for "inertial", B for
-/// "body", else the named body). p, v, a, ω, α are of K in W, minus those of Ao if marked Δ; all components in F.
+/// K is the node, B its body, A the body of relative_to or one of its nodes (W without), F the frame of components (W
+/// for "inertial", B for "body", else the named body or node). p, v, a, ω, α are of K in W, minus those of Ao if marked
+/// Δ; all components in F.
 ///
 ///   type                   observer = "turning": as A sees it           observer = "fixed"
 ///   position               Δp                                           Δp
@@ -52,6 +53,7 @@ struct Sensor {
   int body = -1, node = 0;  ///< body: index; node: index within the body. Hinge sensors: body of the hinge
   int frame = -1;           ///< body index, -1: W
   int relative_to = -1;     ///< body index, -1: W
+  int frame_node = 0, relative_node = 0;  ///< index within those bodies; 0: the body itself
   bool from_turning = true;
   const CentralGravity* orbit = nullptr;  ///< relative_to: its LVLH frame about this centre, not its own frame
   bool in_orbital_frame = false;          ///< components in that frame

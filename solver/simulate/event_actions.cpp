@@ -80,6 +80,26 @@ int find_controller(const System& system, const records::UserEventRecord& r, Dia
   return -1;
 }
 
+/// Body of a level event; -1 with errors reported.
+int find_levels(const System& system, const records::SystemSpec& spec, const records::UserEventRecord& r,
+                Diagnostics& diagnostics) {
+  const int body = system.find_body(r.target);
+  if (body < 0) {
+    if (!has_record(spec.bodies, r.target))
+      report(r, "run.unknown-target", "names body '" + r.target + "', which does not exist",
+             find_near(r.target, system.num_bodies(), [&](int i) { return system.body_name(i); }), diagnostics);
+    return -1;
+  }
+  const int count = system.num_levels.empty() ? 1 : system.num_levels[static_cast<size_t>(body)];
+  if (count > 1 && r.choice >= 1 && r.choice <= count) return body;
+  report(r, "run.bad-event",
+         count == 1 ? "switches the level of body '" + r.target + "', which has none"
+                    : "names level " + std::to_string(r.choice) + " of body '" + r.target + "', which has " +
+                          std::to_string(count),
+         "give the body levels, a list of files; they count from 1", diagnostics);
+  return -1;
+}
+
 }  // namespace
 
 EventActions EventActions::build(const System& system, const records::SystemSpec& spec, bool is_valid,
@@ -108,6 +128,10 @@ EventActions EventActions::build(const System& system, const records::SystemSpec
                find_near(r.target, system.num_constraints(), [&](int i) { return system.constraint_name(i); }),
                diagnostics);
       change.text = "constraint '" + r.target + (r.action == EventAction::Break ? "' is broken" : "' is to close");
+    } else if (r.action == EventAction::Level) {
+      if (is_valid) change.body = find_levels(system, spec, r, diagnostics);
+      change.choice = r.choice - 1;
+      change.text = "body '" + r.target + "' gets level " + std::to_string(r.choice);
     } else if (r.action == EventAction::Enable || r.action == EventAction::Disable || r.action == EventAction::Switch) {
       if (is_valid) change.place = find_controller(system, r, diagnostics);
       change.choice = r.choice - 1;
@@ -134,6 +158,11 @@ DiscreteState EventActions::apply(size_t trigger, HybridSystem& ode, double t, c
   DiscreteState next = get_discrete(ode.data());
   for (const int row : change.rows)
     next.mode[static_cast<size_t>(row)] = change.action == EventAction::Lock ? HingeMode::Locked : HingeMode::Free;
+  if (change.body >= 0) {
+    const System& system = ode.system();
+    const int variant = system.find_variant(system.variant, change.body, change.choice);
+    if (variant != system.variant) next.variant = variant;
+  }
   if (change.constraint < 0) return next;
   ConstraintState& state = next.constraints[static_cast<size_t>(change.constraint)];
   if (change.action == EventAction::Break) state.is_closed = false;

@@ -24,7 +24,8 @@ class EventActions {
     std::vector<int> rows;  ///< of u: lock, release
     int constraint = -1;    ///< break, close
     int place = -1;         ///< of the controller, in the signal graph
-    int choice = 0;         ///< switch: from 0
+    int body = -1;          ///< level
+    int choice = 0;         ///< switch, level: from 0
     std::string text;
   };
   std::vector<Change> changes_;

@@ -5,6 +5,7 @@
 
 #include "solver/simulate/run.hpp"
 #include "solver/system/system.hpp"
+#include "solver/tree/coordinates.hpp"
 #include "solver/tree/gimbal_lock.hpp"
 
 namespace bough::solver {
@@ -17,7 +18,7 @@ constexpr double kLargestSlosh = 1.2;
 std::string find_large_slosh(const Tree& tree, const TreeData& data) {
   for (const Tank& tank : tree.tanks) {
     for (const TreeBody& tb : tree.bodies) {
-      if (tank.reserve <= 0 || tb.name != tank.name + ".slosh") continue;
+      if (tank.reserve <= 0 || tb.name != tank.name + ".slosh" || is_length(tb, 0)) continue;
       const double cosine = std::cos(data.q[tb.q_offset]) * std::cos(data.q[tb.q_offset + 1]);
       const double amplitude = std::acos(std::clamp(cosine, -1.0, 1.0));
       if (amplitude > kLargestSlosh)

@@ -15,8 +15,8 @@ class HybridSystem final : public Ode {
   explicit HybridSystem(const System& system);
 
   int size() const override { return num_q_ + num_u_ + num_z_ + 2; }
-  /// The system whose equations these are.
-  const System& system() const { return system_; }
+  /// The system whose equations these are: that of the constructor, or the variant with the present fill levels.
+  const System& system() const { return *system_; }
   /// Number of rows of q.
   int num_q() const { return num_q_; }
   /// Rows of y that are q and u.
@@ -25,7 +25,7 @@ class HybridSystem final : public Ode {
   int num_z() const { return num_z_; }
   /// Also leaves data() at (t, y): kinematics, forces, accelerations. No allocation.
   void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override;
-  bool has_projection() const override { return system_.num_constraints() > 0; }
+  bool has_projection() const override { return system_->num_constraints() > 0; }
   void project(double t, Eigen::Ref<VectorXd> y) override;
   void project_error(Eigen::Ref<VectorXd> error) override;
   /// Applies the impacts of all stops reached at (t, y) together; free coordinates follow. The energy loss is
@@ -44,7 +44,8 @@ class HybridSystem final : public Ode {
   VectorXd make_initial_state() const;
   /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
   std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
-  /// Takes y at t from what each coordinate and constraint does to what it does from then on. Describes jumps.
+  /// Takes y at t from what each coordinate and constraint does to what it does from then on, and to the fill levels
+  /// of next.variant. Describes jumps.
   std::vector<std::string> change(double t, const DiscreteState& next, Eigen::Ref<VectorXd> y);
   /// change() for coordinates that stick: the energy lost counts as dissipated. The impulse that stops a remaining rate
   /// also acts on the modes of the body.
@@ -56,7 +57,7 @@ class HybridSystem final : public Ode {
   /// Modes of each coordinate and constraint, for a checkpoint.
   VectorXd make_memory() const;
   /// Returns true if all that may lock, release, close and open is in the mode of `memory`; the coordinates of closing
-  /// hinges follow the motion and do not count.
+  /// hinges follow the motion and do not count, nor do fill levels.
   bool is_alike(const VectorXd& memory) const;
   void get_memory(VectorXd& memory) const;  ///< of that size; no allocation
   /// Restores the modes of hinge coordinates and constraints of get_memory(). Allocates.
@@ -72,10 +73,13 @@ class HybridSystem final : public Ode {
   std::string name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y);
 
  private:
+  std::string switch_levels(double t, int variant, Eigen::Ref<VectorXd> y);
+  void set_variant(int variant);
   void calc_tangent();
   void add_stage_forces(double gamma_h, bool is_first);
 
-  const System& system_;
+  const System& start_;
+  const System* system_;  ///< start_ or one of its variants
   std::unique_ptr<SystemData> data_;
   int num_q_, num_u_, num_z_;
   bool has_motion_ = false;

@@ -71,7 +71,7 @@ bool calc_trial(HybridSystem& ode, double t, const VectorXd& y, VectorXd& y_dot)
 
 }  // namespace
 
-JointContacts::JointContacts(const System& system) : system_(system) {
+JointContacts::JointContacts(const System& system) : system_(&system) {
   for (const JointContact& contact : system.joint_contacts) {
     Watched w;
     w.contact = contact;
@@ -197,7 +197,7 @@ bool JointContacts::can_strike(const HybridSystem& ode, const Watched& w) const 
 }
 
 void JointContacts::fail_endless(const std::vector<std::string>& what) const {
-  throw ComputationError("run.endless-impacts", system_.tree.bodies.front().hinge_at,
+  throw ComputationError("run.endless-impacts", system_->tree.bodies.front().hinge_at,
                          "impacts between rigid stops repeat without end, last " + what.back(),
                          "give them a restitution below 1, or a stiffness in its place");
 }
@@ -236,7 +236,7 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     // Locks and prescribed motions, and no friction, hold the loop: the friction is zero, not that of a round-off rate.
     if (none_rests && mode == HingeMode::Free && w.contact.has_friction() && w.stop == 0 &&
         std::abs(rate) * shortest <= kHeldTravel &&
-        is_held_by_loop(system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
+        is_held_by_loop(*system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
       slide[i] = 0;
       continue;
     }
@@ -245,12 +245,12 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     const bool turns = !w.contact.has_friction() || w.slide == 0 || w.slide * rate <= 0;
     if (!is_held || !is_slow || !turns) continue;
     if (mode == HingeMode::Free && w.slide == 0 && holds &&
-        is_held_by_loop(system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
+        is_held_by_loop(*system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
       slide[i] = 0;
       continue;
     }
     if (w.stop == 0 && mode == HingeMode::Free &&
-        is_forced(system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
+        is_forced(*system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
       if (slide[i] == 0) slide[i] = sign(acceleration);
       continue;
     }
@@ -289,7 +289,7 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     const int row = w.contact.u_row;
     // The sign of round-off is no reversal: the coordinate is tested again when a joint of its loop slips.
     if (any_rests && w.slide != 0 && std::abs(y[u + row]) <= slowest[i] &&
-        is_held_by_loop(system_, ode.data(), row, y_dot_[u + row], w.high(ode.data().tree)))
+        is_held_by_loop(*system_, ode.data(), row, y_dot_[u + row], w.high(ode.data().tree)))
       w.slide = 0;
     if (rests[i] && !before[i])
       what.push_back(w.contact.name + (w.stop != 0 ? " comes to rest at its stop" : " sticks"));

@@ -18,6 +18,8 @@ class JointContacts {
  public:
   /// `system` must outlive this; no contact sticks until settle().
   explicit JointContacts(const System& system);
+  /// Watches the joints of a variant of the system (System::variants) from now on.
+  void set_system(const System& system) { system_ = &system; }
   /// Returns true if no hinge has dry friction or rigid stops.
   bool empty() const { return joint_contacts_.empty(); }
   static constexpr int kNumEventFunctions = 3;  ///< of each joint contact
@@ -76,7 +78,7 @@ class JointContacts {
   void find_rest(HybridSystem& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what);
   void lock(HybridSystem& ode, double t, const std::vector<bool>& rests, VectorXd& y) const;
 
-  const System& system_;
+  const System* system_;
   /// Rows of find_rest(), one for each joint contact.
   struct Scratch {
     std::vector<bool> rests, before;

@@ -48,7 +48,7 @@ double calc_first_frequency(const System& system, int b) {
   return 0;
 }
 
-ModalRangeMonitor::ModalRangeMonitor(const System& system) : system_(system) {
+ModalRangeMonitor::ModalRangeMonitor(const System& system) : system_(&system) {
   for (int b = 0; b < system.num_bodies(); ++b) {
     if (system.num_modes(b) == 0) continue;
     const bool is_stiffened = get_body(system, b).body.stiffened() || system.is_lagged;
@@ -68,8 +68,8 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
   std::vector<Crossing> found;
   for (Watched& w : watched_) {
     if (w.reported == Range::Left || !(w.size > 0)) continue;
-    const Body& body = get_body(system_, w.body).body;
-    const auto eta = q.segment(system_.eta_offset(w.body), system_.num_modes(w.body));
+    const Body& body = get_body(*system_, w.body).body;
+    const auto eta = q.segment(system_->eta_offset(w.body), system_->num_modes(w.body));
     double largest = 0;
     const Node* where = nullptr;
     for (const Node& node : body.nodes()) {
@@ -88,7 +88,7 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
     const auto report = [&](const std::string& limit, const std::string& advice) {
       w.reported = largest > w.size ? Range::Left : Range::Passed;
       found.push_back({w.body, "run.linear-limit",
-                       "body '" + system_.body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
+                       "body '" + system_->body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
                            std::to_string(where->id) + (t ? " at t = " + short_text(*t) : " at rest") + limit,
                        advice + "cut its deck into several bodies with bough split DECK --parts N"});
     };
@@ -122,7 +122,7 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_spins(double t,
       w.spin_reported = true;
       found.push_back(
           {w.body, spin_id,
-           "body '" + system_.body_name(w.body) + "' has no stiffening and turns at " + short_text(spin) +
+           "body '" + system_->body_name(w.body) + "' has no stiffening and turns at " + short_text(spin) +
                " at t = " + short_text(t) + ", more than half of its first frequency " + short_text(w.frequency) +
                " (radians per unit of time): without stiffening its modes soften, while the spin stiffens the body",
            "set stiffening = true for this body"});
@@ -136,13 +136,13 @@ bool ModalRangeMonitor::watches_spins() const {
 }
 
 VectorXd ModalRangeMonitor::calc_modal_limit() const {
-  VectorXd reach = VectorXd::Constant(system_.num_q(), std::numeric_limits<double>::infinity());
+  VectorXd reach = VectorXd::Constant(system_->num_q(), std::numeric_limits<double>::infinity());
   for (const Watched& w : watched_) {
-    for (int j = 0; j < system_.num_modes(w.body); ++j) {
+    for (int j = 0; j < system_->num_modes(w.body); ++j) {
       double largest = 0;
-      for (const Node& node : get_body(system_, w.body).body.nodes())
+      for (const Node& node : get_body(*system_, w.body).body.nodes())
         if (node.is_material) largest = std::max(largest, node.phi.col(j).norm());
-      if (largest > 0 && w.size > 0) reach[system_.eta_offset(w.body) + j] = w.size / largest;
+      if (largest > 0 && w.size > 0) reach[system_->eta_offset(w.body) + j] = w.size / largest;
     }
   }
   return reach;

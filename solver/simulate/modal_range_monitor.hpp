@@ -32,6 +32,8 @@ class ModalRangeMonitor {
 
   /// Watches every flexible body; the spin limit only of bodies without stiffening. `system` must outlive this.
   explicit ModalRangeMonitor(const System& system);
+  /// Watches the bodies of a variant of the system (System::variants) from now on.
+  void set_system(const System& system) { system_ = &system; }
 
   /// A limit that was exceeded at t for the first time, as one message.
   struct Crossing {
@@ -66,7 +68,7 @@ class ModalRangeMonitor {
     Range reported = Range::Kept;
     bool spin_reported = false;
   };
-  const System& system_;
+  const System* system_;
   std::vector<Watched> watched_;
 };
 

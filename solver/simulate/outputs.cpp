@@ -8,7 +8,7 @@
 
 namespace bough::solver {
 
-Outputs::Outputs(const System& system) : system_(system) {
+Outputs::Outputs(const System& system) : system_(&system) {
   add_channel("/time", 1, "time", "T");
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/bodies/" + system.body_name(b) + "/";
@@ -142,13 +142,13 @@ const VectorXd& Outputs::keep_sample() {
     kept_.segment(at, size) = sample_.segment(first, size);
     at += size;
   }
-  for (int b = 0; b < system_.num_bodies(); ++b)
+  for (int b = 0; b < system_->num_bodies(); ++b)
     quaternions.segment<4>(4 * b) = sample_.segment<4>(quaternion_at_[static_cast<size_t>(b)]);
   return kept_;
 }
 
 void Outputs::add_recovery(const std::string& path, int body) {
-  const auto& recovery = system_.recoveries[static_cast<size_t>(body)];
+  const auto& recovery = system_->recoveries[static_cast<size_t>(body)];
   if (!recovery) return;
   for (const auto& element : recovery->elements()) {
     if (!element.is_recorded) continue;
@@ -169,34 +169,35 @@ void Outputs::add_part(Group group, int index, int size, int num_of_motion) {
 
 void Outputs::divide() {
   add_part(Group::Time, 0, 1, 1);
-  for (int b = 0; b < system_.num_bodies(); ++b) {
-    const int n = system_.num_modes(b);
+  for (int b = 0; b < system_->num_bodies(); ++b) {
+    const int n = system_->num_modes(b);
     add_part(Group::Body, b, 13 + 2 * n + (n > 0 ? 1 : 0), 13 + 2 * n + (n > 0 ? 1 : 0));
-    const auto& recovery = system_.recoveries[static_cast<size_t>(b)];
+    const auto& recovery = system_->recoveries[static_cast<size_t>(b)];
     int size = 0;
     for (size_t e = 0; recovery && e < recovery->elements().size(); ++e)
       if (recovery->elements()[e].is_recorded) size += recovery->elements()[e].size();
     if (size > 0) add_part(Group::Recovery, b, size, 0);
   }
-  for (int b = 0; b < system_.num_bodies(); ++b) {
-    const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);
+  for (int b = 0; b < system_->num_bodies(); ++b) {
+    const int nq = system_->num_hinge_q(b), nu = system_->num_hinge_rates(b);
     if (nq > 0) add_part(Group::Hinge, b, nq + 2 * nu, nq + nu);
     add_part(Group::Reaction, b, 6, 0);
   }
-  for (int c = 0; c < system_.num_constraints(); ++c) add_part(Group::Constraint, c, system_.is_coupler(c) ? 1 : 6, 0);
-  for (size_t i = 0; i < system_.elements.size(); ++i) {
+  for (int c = 0; c < system_->num_constraints(); ++c)
+    add_part(Group::Constraint, c, system_->is_coupler(c) ? 1 : 6, 0);
+  for (size_t i = 0; i < system_->elements.size(); ++i) {
     int size = 0;
-    for (const ForceChannel& c : system_.elements[i]->channels()) size += c.size;
+    for (const ForceChannel& c : system_->elements[i]->channels()) size += c.size;
     if (size > 0) add_part(Group::Element, static_cast<int>(i), size, 0);
   }
-  const auto& places = system_.signals.places;
+  const auto& places = system_->signals.places;
   for (size_t i = 0; i < places.size(); ++i) {
     const int size = places[i].block->sizes.outputs;
     if (size > 0) add_part(Group::Signal, static_cast<int>(i), size, places[i].needs_acceleration ? 0 : size);
   }
-  for (size_t i = 0; i < system_.tree.tanks.size(); ++i) add_part(Group::Tank, static_cast<int>(i), 2, 0);
+  for (size_t i = 0; i < system_->tree.tanks.size(); ++i) add_part(Group::Tank, static_cast<int>(i), 2, 0);
   add_part(Group::Energy, 0, 5, 0);
-  add_part(Group::Momentum, 0, 6 + system_.num_momentum_out(), 0);
+  add_part(Group::Momentum, 0, 6 + system_->num_momentum_out(), 0);
   add_part(Group::Mass, 0, 13, 13);
   BOUGH_DEMAND(part_of_row_.size() == static_cast<size_t>(sample_.size()));
 }
@@ -241,9 +242,9 @@ void Outputs::calc_body(int b, int at, const SampleState& state) {
   put(wxyz);
   put(Vector3d(s.R_WB * s.v_B));
   put(s.w_B);
-  put(state.q.segment(system_.eta_offset(b), system_.num_modes(b)));
-  put(state.u.segment(system_.eta_dot_offset(b), system_.num_modes(b)));
-  if (system_.num_modes(b) > 0) sample_[at++] = calc_strain_energy(system_, state.data, b);
+  put(state.q.segment(system_->eta_offset(b), system_->num_modes(b)));
+  put(state.u.segment(system_->eta_dot_offset(b), system_->num_modes(b)));
+  if (system_->num_modes(b) > 0) sample_[at++] = calc_strain_energy(*system_, state.data, b);
 }
 
 void Outputs::calc_part(const Part& part, const SampleState& state) {
@@ -262,29 +263,29 @@ void Outputs::calc_part(const Part& part, const SampleState& state) {
       calc_body(part.index, at, state);
       break;
     case Group::Recovery: {
-      const auto& recovery = system_.recoveries[index];
+      const auto& recovery = system_->recoveries[index];
       for (const auto& element : recovery->elements()) {
         if (!element.is_recorded) continue;
-        recovery->calc(get_motion(system_, data), element.first, element.size(), sample_.data() + at);
+        recovery->calc(get_motion(*system_, data), element.first, element.size(), sample_.data() + at);
         at += element.size();
       }
       break;
     }
     case Group::Hinge: {
-      const int nq = system_.num_hinge_q(part.index), nu = system_.num_hinge_rates(part.index);
-      get_hinge(get_motion(system_, data), part.index, sample_.segment(at, nq), sample_.segment(at + nq, nu),
+      const int nq = system_->num_hinge_q(part.index), nu = system_->num_hinge_rates(part.index);
+      get_hinge(get_motion(*system_, data), part.index, sample_.segment(at, nq), sample_.segment(at + nq, nu),
                 sample_.segment(at + nq + nu, nu));
       break;
     }
     case Group::Reaction: {
-      const HingeReaction reaction = get_hinge_reaction(system_, data, part.index);
+      const HingeReaction reaction = get_hinge_reaction(*system_, data, part.index);
       put(reaction.force);
       put(reaction.moment);
       break;
     }
     case Group::Constraint: {
-      const ConstraintReaction reaction = get_constraint_reaction(system_, data, part.index);
-      if (system_.is_coupler(part.index)) {
+      const ConstraintReaction reaction = get_constraint_reaction(*system_, data, part.index);
+      if (system_->is_coupler(part.index)) {
         sample_[at] = reaction.multiplier;
         break;
       }
@@ -296,27 +297,27 @@ void Outputs::calc_part(const Part& part, const SampleState& state) {
       for (int k = 0; k < part.size; ++k) sample_[at++] = data.elements[index].values[static_cast<size_t>(k)];
       break;
     case Group::Signal:
-      sample_.segment(at, part.size) = data.signals.values.segment(system_.signals.places[index].out, part.size);
+      sample_.segment(at, part.size) = data.signals.values.segment(system_->signals.places[index].out, part.size);
       break;
     case Group::Tank:
       sample_[at++] = data.tree.tanks[index].mass;
       sample_[at++] = data.tree.tanks[index].flow;
       break;
     case Group::Energy:
-      energies_ = calc_energies(system_, data);
+      energies_ = calc_energies(*system_, data);
       put(Eigen::Vector4d(energies_.kinetic, energies_.strain, energies_.potential, state.work));
       sample_[at++] = state.dissipated;
       break;
     case Group::Momentum: {
       Vector3d linear, angular;
-      calc_momentum(system_, data, linear, angular);
+      calc_momentum(*system_, data, linear, angular);
       put(linear);
       put(angular);
-      if (system_.num_momentum_out() > 0) put(data.momentum_out);
+      if (system_->num_momentum_out() > 0) put(data.momentum_out);
       break;
     }
     case Group::Mass: {
-      const SystemMass mass = calc_system_mass(system_, data);
+      const SystemMass mass = calc_system_mass(*system_, data);
       sample_[at++] = mass.mass;
       put(mass.cg_W);
       put(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(mass.inertia_W.data()));  // symmetric

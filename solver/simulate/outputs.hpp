@@ -22,6 +22,8 @@ class Outputs {
   /// reaction_moment; per constraint its reactions; elements of force; sensors, controllers, actuators, functions that
   /// are signals; energy; momentum; system_mass.
   explicit Outputs(const System& system);
+  /// Samples a variant of the system (System::variants) from now on; its channels are equal.
+  void set_system(const System& system) { system_ = &system; }
 
   /// Channels of calc_sample.
   const std::vector<records::Channel>& channels() const { return channels_; }
@@ -68,7 +70,7 @@ class Outputs {
   void calc_part(const Part& part, const SampleState& state);
   void calc_body(int body, int at, const SampleState& state);
 
-  const System& system_;
+  const System* system_;
   std::vector<records::Channel> channels_, chosen_;
   std::vector<std::pair<int, int>> ranges_;  ///< first and size in sample_ of what is chosen
   std::vector<int> quaternion_at_;

@@ -147,6 +147,15 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
   progress_.end = time_events_.end();
 }
 
+void Run::set_variant() {
+  const System& system = ode_.system();
+  setup_.recorder.set_system(system);
+  limit_.set_system(system);
+  joint_contacts_.set_system(system);
+  expected_data_ = system.make_data();
+  evaluated_.number = evaluated_.motion_number = -1;
+}
+
 void Run::start() {
   begin();
   if (outcome_ || time_ >= time_events_.end()) return;
@@ -420,15 +429,14 @@ void Run::watch_elements(double t) {
   const System& system = ode_.system();
   for (size_t i = 0; i < inside_.size(); ++i) {
     const auto& element = system.elements[inside_[i]];
-    const std::string outside = element->describe_outside(system.tree, ode_.data().tree);
-    if (outside.empty()) continue;
+    const ValidityWarning outside = element->check_validity(system.tree, ode_.data().tree);
+    if (outside.id == nullptr) continue;
     const auto is_own = [&](const records::ForceElementRecord& record) { return record.name == element->name(); };
     const auto record = std::find_if(spec_.force_elements.begin(), spec_.force_elements.end(), is_own);
     inside_.erase(inside_.begin() + static_cast<std::ptrdiff_t>(i--));
-    sink_.write_event({t, outside});
-    diagnostics_.warning("run.below-ground", record != spec_.force_elements.end() ? record->at : spec_.simulation.at,
-                         outside + ", from t = " + short_text(t) + " on",
-                         "end the run at the ground by an event, or check the radius of the planet and the start");
+    sink_.write_event({t, outside.message});
+    diagnostics_.warning(outside.id, record != spec_.force_elements.end() ? record->at : spec_.simulation.at,
+                         outside.message + ", from t = " + short_text(t) + " on", outside.advice);
   }
 }
 

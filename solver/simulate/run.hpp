@@ -93,6 +93,8 @@ class Run {
  private:
   /// Difference steps of the rows of y_, as linear models take them.
   VectorXd calc_state_steps() const;
+  /// After a switch of fill levels: outputs, limits and contacts of the present system.
+  void set_variant();
   bool is_stop_asked() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
 
   // The loop (run.cpp)

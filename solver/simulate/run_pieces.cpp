@@ -119,6 +119,7 @@ void Run::restore_state(const records::Checkpoint& saved) {
   setup_.recorder.quaternions = *saved.find("quaternions");
   limit_.set_memory(*saved.find("limits"));
   ode_.set_memory(*saved.find("discrete"));
+  if (!ode_.system().num_levels.empty()) set_variant();
   joint_contacts_.set_memory(*saved.find("latches"), ode_);
   set_control_memory(*saved.find("control"));
   const VectorXd& events = *saved.find("events");

@@ -13,7 +13,7 @@ bool is_same(const DiscreteState& a, const DiscreteState& b) {
   const auto closes_alike = [](const ConstraintState& x, const ConstraintState& y) {
     return x.is_closed == y.is_closed;
   };
-  return a.mode == b.mode && a.memory.size() == b.memory.size() && a.memory == b.memory &&
+  return a.variant == b.variant && a.mode == b.mode && a.memory.size() == b.memory.size() && a.memory == b.memory &&
          std::equal(a.constraints.begin(), a.constraints.end(), b.constraints.begin(), closes_alike);
 }
 
@@ -111,6 +111,7 @@ void Run::change(const Occurrence& firing) {
                        get_source(firing)});
     for (const auto& what : ode_.change(firing.time, next, y_))
       sink_.write_event({firing.time, what, get_source(firing)});
+    if (next.variant >= 0) set_variant();
     joint_contacts_.demand_inside(ode_, firing.time, 4 * time_events_.resolution(), y_);
   });
   const bool is_quick = firing.time - changed_ < kMinEventSpacing * (time_events_.end() - time_events_.start());

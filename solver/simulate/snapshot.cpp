@@ -31,7 +31,10 @@ double Run::restore(const records::Checkpoint& c) {
   if (const auto* m = c.find("quaternions")) setup_.recorder.quaternions = *m;
   if (const auto* m = c.find("limits")) limit_.set_memory(*m);
   if (const auto* m = c.find("stepper")) restored_.memory = {{"stepper", *m}};
-  if (const auto* m = c.find("discrete")) ode_.set_memory(*m);
+  if (const auto* m = c.find("discrete")) {
+    ode_.set_memory(*m);
+    if (!ode_.system().num_levels.empty()) set_variant();
+  }
   if (const auto* m = c.find("latches")) joint_contacts_.set_memory(*m, ode_);
   time_events_.skip_outputs(c.time);
   if (const auto* m = c.find("control")) set_control_memory(*m);

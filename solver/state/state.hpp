@@ -26,6 +26,7 @@ struct DiscreteState {
   std::vector<HingeMode> mode;               ///< num_u, by row of u; modal rows are Free
   std::vector<ConstraintState> constraints;  ///< one per constraint; empty: as they were
   VectorXd memory;                           ///< discrete state of controllers, sensors and actuators
+  int variant = -1;                          ///< of the fill levels of bodies (System::variants); -1: as it was
   VectorXd slide;  ///< num_u: -1, 1 is the direction in which a coordinate with dry friction slides; empty: as it was
 };
 

@@ -19,7 +19,19 @@ int System::num_bodies() const { return static_cast<int>(tree.bodies.size()); }
 int System::num_q() const { return tree.num_q; }
 int System::num_u() const { return tree.num_u; }
 int System::num_z() const { return signals.num_states + num_momentum_out(); }
-int System::num_momentum_out() const { return tree.tanks.empty() ? 0 : 6; }
+int System::num_momentum_out() const { return tree.tanks.empty() && num_levels.empty() ? 0 : 6; }
+
+int System::get_level(int k, int body) const {
+  if (num_levels.empty()) return 0;
+  for (int b = 0; b < body; ++b) k /= num_levels[as_index(b)];
+  return k % num_levels[as_index(body)];
+}
+
+int System::find_variant(int k, int body, int level) const {
+  int stride = 1;
+  for (int b = 0; b < body; ++b) stride *= num_levels[as_index(b)];
+  return k + stride * (level - get_level(k, body));
+}
 
 int System::find_body(const std::string& name) const {
   for (int b = 0; b < num_bodies(); ++b) {
@@ -122,7 +134,7 @@ bool has_modes(const SystemData& data, const DiscreteState& discrete) {
 }
 
 DiscreteState get_discrete(const SystemData& data) {
-  return {data.tree.mode, get_constraint_states(data.loops), data.signals.memory, data.tree.slide};
+  return {data.tree.mode, get_constraint_states(data.loops), data.signals.memory, -1, data.tree.slide};
 }
 
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,

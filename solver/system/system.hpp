@@ -59,6 +59,19 @@ struct System {
   /// Terms, by body, that would stiffen a body whose stiffening is off. nullptr: it is on, or the file has none.
   std::vector<std::shared_ptr<const StiffeningTerms>> left_out;
 
+  /// Systems that differ from this one in the fill levels of flexible bodies alone: rows of states, signals and
+  /// channels are equal. Empty: no body has levels. That of this system is null.
+  std::vector<std::shared_ptr<const System>> variants;
+  std::vector<int> num_levels;  ///< by body; 1: it has none. Empty: no body has levels; in variants too
+  int variant = 0;              ///< own index among the variants
+
+  /// Level of a body in a variant, from 0.
+  int get_level(int variant, int body) const;
+  /// Variant that differs from another one by the level of one body.
+  int find_variant(int variant, int body, int level) const;
+  /// A variant of the system of the start.
+  const System& get_variant(int k) const { return k == variant ? *this : *variants[static_cast<size_t>(k)]; }
+
   /// Number of bodies, ground not counted.
   int num_bodies() const;
   /// Number of coordinates: hinge coordinates with quaternions, then modal coordinates, body by body.
@@ -67,7 +80,8 @@ struct System {
   int num_u() const;
   /// Continuous states of controllers, actuators and sensors, then num_momentum_out().
   int num_z() const;
-  /// 6 with tanks, else 0: momentum that has left with propellant (linear, then angular about the inertial origin, W).
+  /// 6 with tanks or fill levels, else 0: momentum that has left with propellant (linear, then angular about the
+  /// inertial origin, W).
   int num_momentum_out() const;
   int find_body(const std::string& name) const;   ///< -1 when absent
   int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h

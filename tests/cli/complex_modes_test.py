@@ -237,6 +237,16 @@ class ComplexModes(ProgramTest):
         self.near(self.solve(make_chain("107", "FORCE,5,2,,1.,1.,0.,0.", static)), expected)
         self.bough("check", "d.bdf")
 
+    def test_selected_modes(self):
+        """MODSEL of SOL 110: modes 1 and 3 of the chain alone; a set without a mode is an error."""
+        expected = solve_dense(np.diag(MASS), np.zeros((N, N)), make_stiffness())
+        case = "RESVEC = NO\nSET 4 = 1, 3\nMODSEL = 4"
+        found = self.solve(make_chain("110", "", case, "LAN,,,,,2"))
+        np.testing.assert_allclose(found, [expected[0], expected[2]], rtol=1e-8)
+        for wrong, error in ((case.replace("1, 3", "77"), "modal.empty-selection"), ("MODSEL = 6", "modal.missing-set")):
+            self.write("d.bdf", make_chain("110", "", wrong))
+            self.fails(1, "modes", "d.bdf", error=error, says=["MODSEL"])
+
     def test_overdamped(self):
         """Two real eigenvalues, g = 0."""
         for sol in ("107", "110"):

@@ -35,7 +35,7 @@ MAT8,2,1.4+11,1.+10,.3,5.+9,,,1500.,+
 GRID,20,,4.,3.,0.
 CROD,20,3,15,20
 PROD,3,1,1.-3,1.-8
-CBAR,21,4,20,10,0.,0.,1.
+CBAR,21,4,20,9,0.,0.,1.
 PBAR,4,1,1.-3,1.-6,1.-6,1.-6,,,+
 +,.03,.03,-.03,-.03
 GRID,31,,6.,0.,0.
@@ -184,9 +184,9 @@ class Page(BrowserTest):
         stress = columns["von_mises"]
         self.assertEqual(self.choose("von Mises stress"), "stress")
         bar = b.run("document.querySelector('.color-bar').innerText")
-        self.assertIn("von Mises stress [F/L^2]", bar)
+        self.assertIn("von Mises stress [F/L²]", bar)
         low, high = min(stress.values()), max(stress.values())
-        numbers = [float(word.replace("−", "-")) for word in bar.replace("von Mises stress [F/L^2]", "").split()]
+        numbers = [float(word.replace("−", "-")) for word in bar.replace("von Mises stress [F/L²]", "").split()]
         np.testing.assert_allclose(numbers, [low, (low + high) / 2, high], rtol=1e-3)
         # Each element over the range; the bar and the laminate have no von Mises stress and are grey.
         ids = b.run(f"Array.from({self.VIEW}.drawing.elements.id)")
@@ -201,7 +201,10 @@ class Page(BrowserTest):
         text = self.click_in_scene((1.5, 1.5, 0))
         self.assertRegex(text, r"^element 6, property 1: von Mises stress \S+ F/L\^2")
         self.assertAlmostEqual(float(text.split()[-2]), stress[6], delta=1e-3 * stress[6])
-        text = self.click_in_scene((4, 2.5, 0))
+        # The middle of the rod as it is drawn.
+        middle = b.run(f"""(() => {{ const t = {self.VIEW}.viewer.things.find((t) => t.levels), ids = Array.from(t.ids);
+          return [0, 1, 2].map((c) => (t.points[3 * ids.indexOf(15) + c] + t.points[3 * ids.indexOf(20) + c]) / 2); }})()""")
+        text = self.click_in_scene(middle)
         self.assertRegex(text, r"^element 20, property 3: ")
         self.assertAlmostEqual(float(text.split()[-2]), stress[20], delta=1e-3 * stress[20])
         # Near a node, the node too.

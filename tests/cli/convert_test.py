@@ -160,7 +160,7 @@ class Convert(ProgramTest):
                 np.testing.assert_allclose(self.calc_frequencies("new.bdf"), self.calc_frequencies(deck), rtol=ROUNDING)
 
     def test_what_cannot_be_converted_is_named_and_nothing_is_written(self):
-        for card, error in [("TABLEM1,3\n,0.,1.,2.,3.,ENDT", "deck.unit-card"), ("PELAS,77,5.", "deck.unit-field"),
+        for card, error in [("TABLES1,3\n,0.,1.,2.,3.,ENDT", "deck.unit-card"), ("PELAS,77,5.", "deck.unit-field"),
                             ("CELAS2,78,5.,6,1,,,,2.", "deck.unit-field"), ("GRID,90,,1.,1.,1.\n=,*1,=,*1.,==",
                                                                               "deck.unit-replication")]:
             with self.subTest(card):

@@ -102,9 +102,20 @@ class Plot(ProgramTest):
             (curve,), _ = self.read(svg)
             self.check(curve, a["time"][inside], a[key][inside])
 
+    def test_subplots_are_named_after_their_channels(self):
+        plots = self.draw("a.h5", "--sensor", "place:x", "--sensor", "/hinges/slide/qdot", "--subplots")
+        texts = [[text.text for text in svg.iter(f"{SVG}text")] for svg in plots]
+        self.assertIn("a", texts[0])
+        self.assertEqual([[t for t in own if t and "[" in t and "time" not in t] for own in texts],
+                         [["place:x [L]"], ["hinges/slide/qdot [L/T]"]])
+
+    def test_powers_of_units_are_raised(self):
+        (svg,) = self.draw("a.h5", "--sensor", "place:x", "--psd", "--y-label", "density [m^2/Hz]")
+        self.assertIn("density [m²/Hz]", [text.text for text in svg.iter(f"{SVG}text")])
+
     def test_curves_have_their_names(self):
         self.get_points("a.h5", "b.h5", "--sensor", "place:x", "--sensor", "/hinges/slide/q")
-        self.assertEqual(self.curves, ["a sensors/place:x", "a hinges/slide/q", "b sensors/place:x", "b hinges/slide/q"])
+        self.assertEqual(self.curves, ["a place:x", "a hinges/slide/q", "b place:x", "b hinges/slide/q"])
 
     def test_a_segment_longer_than_the_samples_is_told(self):
         for segment, is_told in [("5000", True), ("500", False)]:

@@ -135,11 +135,11 @@ class CaseControl(Decks):
         self.write("m.bdf", rod(bulk="PARAM,HEATSTAT,YES\n", sol="101"))
         self.fails(1, "static", "m.bdf", error="deck.unsupported-param", says=["heat transfer"])
 
-    def test_modes_selected_for_complex_modes_are_an_error(self):
-        deck = rod("CMETHOD = 2\nMODSEL = 4\nSET 4 = 1\n", "EIGC,2,CLAN,,,,,1\n", sol="110")
+    def test_modeselect_of_complex_modes_is_an_error(self):
+        deck = rod("CMETHOD = 2\nMODESELECT(LMODENM = 4) = 4\n", "EIGC,2,CLAN,,,,,1\n", sol="110")
         self.write("m.bdf", deck)
-        self.fails(1, "modes", "m.bdf", error="deck.unsupported-command", says=["MODSEL", "--ignore MODSEL"])
-        self.bough("modes", "m.bdf", "--ignore", "MODSEL")
+        self.fails(1, "modes", "m.bdf", error="deck.unsupported-command", says=["MODESELECT", "--ignore MODESELECT"])
+        self.bough("modes", "m.bdf", "--ignore", "MODESELECT")
 
     def test_dmap_and_restarts_are_reported(self):
         self.write("m.bdf", rod().replace("CEND", "COMPILE SEMODES\nALTER 'READ'\nENDALTER\nCEND"))

@@ -84,9 +84,6 @@ class DirectInput(DeckResponse):
                 ("TFL = 4", "TF,4,3,1,500.,0.,0.\n", "deck.unsupported-command", "--ignore TFL", "TF"),
                 ("K42GG = KX", kx, "deck.unsupported-command", "structural damping", "K42GG"),
                 ("NONLINEAR = 4", "NOLIN1,4,1,1,1.,1,1,3\n", "deck.unsupported-command", "depend on the motion", "NOLIN1"),
-                ("", "PBUSH,1,K,1.\nPBUSHT,1,K,7\nCBUSH,92,1,1,2,,,,0\n", "deck.unsupported-card", "over frequency", "PBUSHT"),
-                ("", "PDAMP,3,1.\nPDAMPT,3,7\nCDAMP1,93,3,1,1\n", "deck.unsupported-card", "damping over frequency", "PDAMPT"),
-                ("", "PELAS,3,1.\nPELAST,3,7\nCELAS1,91,3,1,1\n", "deck.unsupported-card", "nominal values", "PELAST"),
                 ("", "EPOINT,77\n", "deck.unsupported-card", "EPOINT", "EPOINT")]:
             for verb in ("frequency", "transient"):
                 self.write("d.bdf", deck(case, bulk))

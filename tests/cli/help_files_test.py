@@ -5,7 +5,7 @@ import shutil
 import subprocess
 import unittest
 
-from support import VERBS, ProgramTest
+from support import SOURCE, VERBS, ProgramTest
 
 
 def list_options(help_text):
@@ -90,6 +90,27 @@ class HelpFiles(ProgramTest):
                 section = whole.split(f".SS bough {verb}\n")[1].split(".SS ")[0].split(".SH ")[0]
                 self.assertEqual(entries, re.findall(r"(?m)^\.TP\n(.*)\n", section))
         self.fails(2, "--man-page=nothing", says=["nothing"], error="cli.usage")
+
+    def test_groups_of_help_are_in_completions_and_pages(self):
+        groups = [(heading, re.findall(r"(?m)^  ([a-z]+) ", block)) for heading, block in re.findall(
+            r"(?m)^(\S[^\n]*):\n((?:  [^\n]*\n)+)", self.bough("--help").stdout)]
+        groups = [(heading, names) for heading, names in groups if names and set(names) <= set(VERBS)]
+        self.assertEqual([name for _, names in groups for name in names], VERBS)
+        bash, zsh, fish, man = (self.bough(f"--{kind}").stdout for kind in (
+            "bash-completion", "zsh-completion", "fish-completion", "man-page"))
+        with open(os.path.join(SOURCE, "README.md")) as f:
+            readme = " ".join(f.read().split())
+        with open(os.path.join(SOURCE, "docs/commands.md")) as f:
+            commands = " ".join(f.read().split())
+        for heading, names in groups:
+            with self.subTest(heading):
+                self.assertIn(f"# {heading}: {' '.join(names)}\n", bash)
+                listed = re.search(rf"verbs=\(((?:\n *'[^\n]*)*)\n *\)\n *_describe -t commands-\d '{heading}' verbs\n", zsh)
+                self.assertEqual(re.findall(r"(?m)^ *'([a-z]+):", listed.group(1)), names)
+                self.assertEqual(re.findall(rf"-a ([a-z]+) -d '{heading}: ", fish), names)
+                self.assertIn(f".PP\n{heading}:\n" + ",\n".join(names) + ".\n", man)
+                self.assertIn(f"{heading}: {', '.join(names)}", readme)
+                self.assertIn(f"* {heading}: " + ", ".join(f"[{name}](#{name})" for name in names), commands)
 
     def test_fish_offers_every_verb_and_option(self):
         if not shutil.which("fish"):

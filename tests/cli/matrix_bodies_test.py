@@ -241,7 +241,7 @@ class MatrixBodies(ProgramTest):
         self.same("body.h5", 1e-4, ["/modes/frequency_hz", "/modes/phi", "/integrals/exact/gamma0"])
 
     def test_cards_that_bough_lacks_do_not_matter_here(self):
-        self.write("points.bdf", CASE + POINTS + "CWELD,900,900,ELEMID,1,11\nENDDATA\n")
+        self.write("points.bdf", CASE + POINTS + "CBUSH2D,900,900,1,2,,XY\nENDDATA\n")
         self.reduce("own.h5")
         self.same("body.h5")
 

@@ -13,6 +13,12 @@ def write_card(name, *fields):
     return ",".join([name] + [str(f) if isinstance(f, (int, str)) else repr(float(f)) for f in fields]) + "\n"
 
 
+def write_bars(places):
+    """GRIDs 1, 2, ... at the places, and CBARs of property 1 from each to the next."""
+    grids = [write_card("GRID", i, "", *place) for i, place in enumerate(places, 1)]
+    return "".join(grids + [write_card("CBAR", i, 1, i, i + 1, 0., 1., 0.) for i in range(1, len(grids))])
+
+
 class NonlinearPreload(ProgramTest):
     def reduce(self, deck, tip, modes=6, preload="load_set = 5\nnonlinear = true", more="", name="deck"):
         self.write(f"{name}.bdf", deck)
@@ -117,10 +123,7 @@ class NonlinearPreload(ProgramTest):
         for num in (20, 40):
             text = "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nGRDSET,,,,,,,345\nSPC1,1,123456,1\n"
             text += f"MAT1,1,{E!r},,.3,{RHO!r}\nPBAR,1,1,{A!r},{I!r},2.-9,1.-9\nPARAM,COUPMASS,1\n"
-            for i in range(num + 1):
-                text += write_card("GRID", i + 1, "", length * i / num, 0., 0.)
-            for i in range(num):
-                text += write_card("CBAR", i + 1, 1, i + 1, i + 2, 0., 1., 0.)
+            text += write_bars([(length * i / num, 0., 0.) for i in range(num + 1)])
             text += write_card("FORCE", 5, num + 1, 0, 1., force[0], force[1], 0.) + "ENDDATA\n"
             body = self.reduce(text, num + 1, modes=4)
             off.append(np.abs(body["hz"][:4] / exact - 1).max())
@@ -145,10 +148,7 @@ class NonlinearPreload(ProgramTest):
         H = mass * g * span**2 / (8 * sag)
         x = np.linspace(0, span, num + 1)
         free = sag * np.sqrt(1 - 3 / 8 * span**2 / sag**2 * H / EA)
-        for i, s in enumerate(x):
-            text += write_card("GRID", i + 1, "", s, 0., -4 * free * s * (span - s) / span**2)
-        for i in range(num):
-            text += write_card("CBAR", i + 1, 1, i + 1, i + 2, 0., 1., 0.)
+        text += write_bars([(s, 0., -4 * free * s * (span - s) / span**2) for s in x])
         body = self.reduce(text + "ENDDATA\n", num // 2 + 1, modes=8)
         found = np.sqrt(mass) * body["hz"][:8] * 2 * span
         depth = -body["x"][2]
@@ -170,10 +170,7 @@ class NonlinearPreload(ProgramTest):
         force = load * np.pi**2 * E * I / (4 * length**2)
         text = "SOL 106\nCEND\nSPC = 1\nLOAD = 5\nBEGIN BULK\nPARAM,LGDISP,1\n"
         text += f"MAT1,1,{E!r},,.3,{RHO!r}\nPBAR,1,1,{A!r},{I!r},3.-8,5.-9\nSPC1,1,{held},1\n"
-        for i in range(num + 1):
-            text += write_card("GRID", i + 1, "", length * i / num, 0., 0.)
-        for i in range(num):
-            text += write_card("CBAR", i + 1, 1, i + 1, i + 2, 0., 1., 0.)
+        text += write_bars([(length * i / num, 0., 0.) for i in range(num + 1)])
         self.write("deck.bdf", text + write_card("FORCE", 5, num + 1, 0, 1., -force, 0., 0.) + "ENDDATA\n")
         self.write("b.toml", '[body]\nname = "b"\ndeck = "deck.bdf"\n[body.modes]\nnumber = 4\n[body.preload]\n'
                    "load_set = 5\nnonlinear = true\n")

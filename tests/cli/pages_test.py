@@ -222,7 +222,7 @@ PAGES = {
                                 stands_for={"results.h5": "run.h5"}),
     "docs/formats/pvd.md": boom(stands_for={"hub": "boom"}),
     "docs/formats/gltf.md": boom(),
-    "docs/formats/system-toml.md": boom(stands_for={
+    "docs/formats/system-units.md": boom(stands_for={
         "mm/boom.h5": "mm-boom.h5", "mm/spinup.toml": "mm-spinup.toml"}),   # a folder that the reader makes
     "docs/formats/vtu.md": Page(("ex05-plate",), stands_for={"DECK": "plate.bdf"}),
     "docs/formats/mat.md": boom(stands_for={"FILE.h5": "run.h5"}),

@@ -178,7 +178,14 @@ class Parts(ProgramTest):
         self.write("d.bdf", make_parts(more="GRID,105,,2.,0.,.5\nCBUSH,105,105,5,105,,,,0\nPBUSH,105,K,1.+6,1.+6,1.+6,1.+6,1.+6,1.+6\n"))
         self.fails(1, "static", "d.bdf", error="fe.part-boundary", says=["grids 5 and 105", "grid 5 of superelement 1"])
         self.write("d.bdf", make_parts())
-        self.fails(1, "export", "d.bdf", "--to", "bdf", "-o", "e.bdf", error="deck.not-written", says=["BEGIN SUPER = 1"])
+        self.fails(1, "split", "d.bdf", "--parts", "2", error="split.superelements")
+
+    def test_written_deck_has_the_sections(self):
+        """export --to bdf writes each section: modes of the deck and of the written one are those of one model."""
+        self.write("d.bdf", make_parts())
+        self.bough("export", "d.bdf", "--to", "bdf", "-o", "e.bdf")
+        hz = [json.loads(self.bough("modes", deck, "--json").stdout)["frequency_hz"] for deck in ("d.bdf", "e.bdf")]
+        np.testing.assert_allclose(hz[1], hz[0], rtol=1e-9)
 
     def test_sets_of_sections_alone(self):
         """MPC and SPC sets that only a section has are no empty selections; no message of PRIMARY follows another error."""

@@ -2,6 +2,7 @@
 written decks, are those that `bough modes` finds for the deck."""
 import json
 import os
+import re
 import unittest
 
 import h5py
@@ -37,6 +38,31 @@ def make_plate(nx=12, ny=3, more="SPC1,1,123456,1,14,27,40\n", control="SPC = 1\
     """1.2 by 0.3 of 2 mm; grid j (nx + 1) + i + 1 at station i."""
     text = "PSHELL,1,1,.002,1,,1\nPARAM,K6ROT,100.\n"
     text += mesh(nx, ny, lambda i, j: f"{.1 * i:.6g},{.1 * j:.6g},0.")
+    return HEAD.format(control=control) + MATERIAL + text + more + "ENDDATA\n"
+
+
+def make_box(n=9, more="SPC1,1,123456,1,THRU,4\n"):
+    """A square tube of 1.2 m, 0.1 m wide, walls of 2 mm; grid 4 i + k + 1 at station i."""
+    ring = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    text = "PSHELL,1,1,.002,1,,1\nPARAM,K6ROT,100.\n"
+    text += "".join(f"GRID,{4 * i + k + 1},,{1.2 * i / n:.6g},{.05 * y},{.05 * z}\n"
+                    for i in range(n + 1) for k, (y, z) in enumerate(ring))
+    for i in range(n):
+        for k in range(4):
+            a, b = 4 * i + k + 1, 4 * i + (k + 1) % 4 + 1
+            text += f"CQUAD4,{4 * i + k + 1},1,{a},{a + 4},{b + 4},{b}\n"
+    return HEAD.format(control="SPC = 1\n") + MATERIAL + text + more + "ENDDATA\n"
+
+
+def make_column(n=12, more="SPC1,1,123,1,2,3,4\n", control="SPC = 1\n"):
+    """A column of n bricks of 0.1 m."""
+    text = "PSOLID,1,1\n"
+    for i in range(n + 1):
+        for k, (y, z) in enumerate(((0., 0.), (.1, 0.), (.1, .1), (0., .1))):
+            text += f"GRID,{4 * i + k + 1},,{.1 * i:.6g},{y},{z}\n"
+    for i in range(n):
+        a = 4 * i
+        text += f"CHEXA,{i + 1},1,{a + 1},{a + 5},{a + 6},{a + 2},{a + 4},{a + 8},\n,{a + 7},{a + 3}\n"
     return HEAD.format(control=control) + MATERIAL + text + more + "ENDDATA\n"
 
 
@@ -92,31 +118,66 @@ class Split(ProgramTest):
             exact = 1.875104069 ** 2 / (2 * np.pi) * np.sqrt(7e10 * 1e-8 / (mass * 8. ** 4))
             self.assertAlmostEqual(answer["frequencies"][0]["parts_hz"] / exact, 1, delta=1e-4)
             self.assertAlmostEqual(answer["mass"] / (8 * mass), 1, delta=1e-12)
+            step = float(re.search(r"(?m)^step = (\S+)", self.read("deck-run.toml"))[1])
+            self.assertAlmostEqual(step * 500 * exact, 1, delta=.3)  # rounded to one digit
             for name in os.listdir(self.folder):
                 os.remove(self.path(name))
 
+    def compare_at_rest(self, deck, part, tip, gravity):
+        """The end under a small weight, at rest, of the parts that are split already and of the whole deck."""
+        system = self.read("deck-run.toml").replace("[0.0, 0.0, -9.81]", str(list(gravity)))
+        system += f'\n[[sensor]]\nname = "tip"\ntype = "position"\nbody = "{part}"\nnode = {tip}\n'
+        self.write("rest.toml", system)
+        self.bough("equilibrium", "rest.toml", "-o", "rest.h5", "-q")
+        card = "GRAV,9,,1.," + ",".join(map(repr, gravity)) + "\nENDDATA\n"
+        self.write("whole.bdf", deck.replace("SOL 103", "SOL 101").replace("SPC = 1\n", "SPC = 1\nLOAD = 9\n")
+                   .replace("ENDDATA\n", card))
+        self.bough("static", "whole.bdf", "-o", "whole.h5", "-q")
+        with h5py.File(self.path("rest.h5")) as f, h5py.File(self.path("whole.h5")) as g:
+            at = (g["dof_map"][:, 0] == tip) & (g["dof_map"][:, 1] <= 3)
+            u, place = g["subcases/0/displacement"][:][at], f["sensors/tip"][0]
+        x = next(line.split(",")[3:6] for line in deck.splitlines() if line.startswith(f"GRID,{tip},"))
+        off = np.linalg.norm(place - np.array(x, float) - u) / np.linalg.norm(u)
+        print(f"way {np.linalg.norm(u):.1e} m, of parts off by {off:.1e}")
+        self.assertLess(off, 1e-4)
+
     def test_static_deflection(self):
-        """The end under a small weight, at rest, of the parts and of the whole deck."""
-        gravity = np.array([0., -6e-3, -8e-3])
+        """The equilibrium of the system, and the program's own table, against `static`."""
         for deck, tip in ((make_boom(), 41), (make_l_frame(), 25)):
-            self.split(deck, "--parts", 4)
-            system = self.read("deck-run.toml").replace("[0.0, 0.0, -9.81]", str(gravity.tolist()))
-            system += f'\n[[sensor]]\nname = "tip"\ntype = "position"\nbody = "deck-4"\nnode = {tip}\n'
-            self.write("rest.toml", system)
-            self.bough("equilibrium", "rest.toml", "-o", "rest.h5", "-q")
-            card = "GRAV,9,,1.," + ",".join(map(repr, gravity.tolist())) + "\nENDDATA\n"
-            self.write("whole.bdf", deck.replace("SOL 103", "SOL 101").replace("SPC = 1\n", "SPC = 1\nLOAD = 9\n")
-                       .replace("ENDDATA\n", card))
-            self.bough("static", "whole.bdf", "-o", "whole.h5", "-q")
-            with h5py.File(self.path("rest.h5")) as f, h5py.File(self.path("whole.h5")) as g:
-                at = (g["dof_map"][:, 0] == tip) & (g["dof_map"][:, 1] <= 3)
-                u, place = g["subcases/0/displacement"][:][at], f["sensors/tip"][0]
-            x = next(line.split(",")[3:6] for line in deck.splitlines() if line.startswith(f"GRID,{tip},"))
-            off = np.linalg.norm(place - np.array(x, float) - u) / np.linalg.norm(u)
-            print(f"way {np.linalg.norm(u):.1e} m, of parts off by {off:.1e}")
-            self.assertLess(off, 1e-4)
+            answer, _ = self.split(deck, "--parts", 4)
+            self.assertEqual([d["load"] for d in answer["deflections"]], [f"unit acceleration along {c}" for c in "xyz"])
+            self.assertLess(max(d["error"] for d in answer["deflections"]), 1e-4)
+            self.compare_at_rest(deck, "deck-4", tip, (0., -6e-3, -8e-3))
+            self.write("unit.bdf", deck.replace("SOL 103", "SOL 101").replace("SPC = 1\n", "SPC = 1\nLOAD = 9\n")
+                       .replace("ENDDATA\n", "GRAV,9,,1.,0.,0.,1.\nENDDATA\n"))
+            self.bough("static", "unit.bdf", "-o", "unit.h5", "-q")
+            with h5py.File(self.path("unit.h5")) as g:
+                u = g["subcases/0/displacement"][:]
+                moved = [np.linalg.norm(u[(g["dof_map"][:, 0] == i) & (g["dof_map"][:, 1] <= 3)]) for i in range(1, tip + 1)]
+            self.assertAlmostEqual(answer["deflections"][2]["deflection"] / max(moved), 1, delta=1e-6)
             for name in os.listdir(self.folder):
                 os.remove(self.path(name))
+
+    def test_static_deflection_by_rigid_cuts_and_loads_of_the_deck(self):
+        """A cut that changes the structure, a load of the deck, a free one under unit forces."""
+        answer, messages = self.split(make_plate(), "--parts", 3, number=3)
+        self.assertNotIn("[split.deflection]", messages)  # split.inaccurate has the cause
+        self.assertGreater(answer["deflections"][2]["error"], 1e-3)
+        answer, messages = self.split(make_box(), "--parts", 2, "--interface", "grids", number=3)
+        self.assertIn("[split.deflection]", messages)
+        self.assertLess(max(f["error"] for f in answer["frequencies"]), 1e-4)
+        deck = make_boom(control="SPC = 1\nLOAD = 7\n", more="SPC1,1,123456,1\nFORCE,7,21,,10.,0.,0.,1.\n")
+        answer, messages = self.split(deck, "--parts", 4)
+        self.assertEqual(answer["deflections"][3]["load"], "LOAD 7")
+        # A beam clamped at one end under a force at its middle: F a² (3L - a)/(6EI) at the end, about both oblique axes.
+        compliance = np.linalg.norm(np.array([1 / 2e-8, .2 / 1e-8]) / np.sqrt(1.04)) / 7e10
+        self.assertAlmostEqual(answer["deflections"][3]["deflection"] / (10 * 16 * (24 - 4) / 6 * compliance), 1, delta=1e-3)
+        self.assertLess(answer["deflections"][3]["error"], 1e-4)
+        ends = "CONM2,201,1,,.5,.0,.1,.3\nCONM2,202,41,,.5,.0,.3,-.1\n"
+        answer, _ = self.split(make_boom(control="", more=ends), "--parts", 3, number=6)
+        self.assertEqual([d["load"] for d in answer["deflections"]],
+                         [f"unit force along {c} at grid 14" for c in "xyz"])
+        self.assertLess(max(d["error"] for d in answer["deflections"]), 1e-4)
 
     def test_l_frame_twists_through_its_cuts(self):
         """Path over the corner; the twist of the first leg has mass only through the second."""
@@ -259,7 +320,7 @@ class Split(ProgramTest):
         answer, messages = self.split(make_plate(), "--parts", 3, number=5)
         self.assertEqual(len(answer["parts"]), 3)
         self.assertIn("[split.inaccurate]", messages)
-        self.assertIn("by a rigid element (RBE2); cut where the section is stiff, or try --interface average", messages)
+        self.assertIn("by a rigid element (RBE2); cut where the section is stiff, or try --interface grids or average", messages)
         rigid = make_plate(more="SPC1,1,123456,1,14,27,40\n" + "".join(
             f"GRID,{100 + c},,{.1 * c:.6g},.15,0.\nRBE2,{900 + c},{100 + c},123456,{c + 1},{c + 14},{c + 27},{c + 40}\n"
             for c in (4, 8)))
@@ -274,7 +335,7 @@ class Split(ProgramTest):
         """RBE3 leave the sections free to bend: the parts are softer than the deck."""
         answer, messages = self.split(make_plate(), "--parts", 3, "--interface", "average", number=5)
         self.assertIn("[split.inaccurate]", messages)
-        self.assertIn("by their mean motion (RBE3); cut where the section is stiff, or try --interface rigid", messages)
+        self.assertIn("by their mean motion (RBE3); cut where the section is stiff, or try --interface grids or rigid", messages)
         self.assertEqual(self.read("deck-2.bdf").count("RBE3"), 2)
         hz = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
         self.assertTrue((hz[:, 1] < hz[:, 0]).all(), hz)
@@ -283,18 +344,49 @@ class Split(ProgramTest):
 
     def test_solids_by_rigid_interfaces(self):
         """A column of bricks; the section is stiff: the cuts cost less than 2 %."""
-        text, n = "PSOLID,1,1\n", 12
-        for i in range(n + 1):
-            for k, (y, z) in enumerate(((0., 0.), (.1, 0.), (.1, .1), (0., .1))):
-                text += f"GRID,{4 * i + k + 1},,{.1 * i:.6g},{y},{z}\n"
-        for i in range(n):
-            a = 4 * i
-            text += f"CHEXA,{i + 1},1,{a + 1},{a + 5},{a + 6},{a + 2},{a + 4},{a + 8},\n,{a + 7},{a + 3}\n"
-        deck = HEAD.format(control="SPC = 1\n") + MATERIAL + text + "SPC1,1,123,1,2,3,4\nENDDATA\n"
-        answer, _ = self.split(deck, "--parts", 2, number=4)
+        answer, _ = self.split(make_column(), "--parts", 2, number=4)
         hz = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
         np.testing.assert_allclose(hz[:, 1], hz[:, 0], rtol=.02)
         np.testing.assert_allclose(self.list_system_hz(number=4), hz[:, 1], rtol=1e-6)
+
+    def split_by_grids(self, deck, *choice, number=6, system=True):
+        """Joins all grids of the cuts: the modes and the static deflections are those of the deck."""
+        answer, messages = self.split(deck, *choice, "--interface", "grids", number=number)
+        print([f"{f['parts_hz'] / f['deck_hz'] - 1:.1e}" for f in answer["frequencies"]],
+              [(d["load"], f"{d['error']:.1e}") for d in answer["deflections"]])
+        self.assertNotIn("warning", messages)
+        self.assertNotIn("redundant-constraint", self.bough("check", "deck-run.toml").stderr)
+        self.assertLess(max(d["error"] for d in answer["deflections"]), 1e-4)
+        if system:
+            self.compare(answer, number=number)
+        return answer, messages
+
+    def test_plate_joined_by_its_grids(self):
+        """Where a rigid cut is 1 to 16 % off; the drilling rotation of a plate is joined where it has stiffness."""
+        for k6rot in ("100.", "0."):
+            answer, messages = self.split_by_grids(make_plate().replace("K6ROT,100.", "K6ROT," + k6rot), "--parts", 3, number=4,
+                                                   system=k6rot != "0.")
+            self.assertEqual([p["joined_grids"] for p in answer["parts"]], [0, 4, 4])
+            self.assertEqual([p["parent"] for p in answer["parts"]], ["ground", "deck-1", "deck-2"])
+            text = self.read("deck-run.toml")
+            self.assertEqual("[split.released]" in messages, k6rot == "0.")
+            self.assertEqual("note: part deck-1: AUTOSPC holds" in messages, k6rot == "0.")
+            self.assertEqual("6 of grid 5, 6 of grid 18, " in messages, k6rot == "0.")
+            self.assertEqual(text.count("[[constraint]]"), 8)
+            self.assertEqual(text.count('rotations = "z"'), 0 if k6rot == "100." else 8)
+            for name in os.listdir(self.folder):
+                os.remove(self.path(name))
+
+    def test_box_and_column_joined_by_their_grids(self):
+        # Corners pass all moments. The system at rest: differences of so stiff corners leave `linearize` three digits.
+        self.split_by_grids(make_box(), "--parts", 2, number=5, system=False)
+        self.compare_at_rest(make_box(), "deck-2", 38, (0., -6e-3, -8e-3))
+        for name in os.listdir(self.folder):
+            os.remove(self.path(name))
+        self.split_by_grids(make_column(), "--parts", 2, number=4)
+        text = self.read("deck-run.toml")
+        self.assertEqual(text.count('type = "spherical"'), 4)  # a solid has no rotation at a grid
+        self.assertIn("interface_moments = false", self.read("deck-2.toml"))
 
     def test_masses_loads_and_rigid_elements_come_once(self):
         more = ("SPC1,1,123456,1\nCONM2,101,21,,3.,.1,0.,.2\nCONM2,102,31,,2.\nCMASS2,103,1.5,41,1\nCMASS2,106,1.5,41,2\n"

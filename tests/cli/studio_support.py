@@ -17,6 +17,10 @@ class StudioTest(ProgramTest):
         self.assertRegex(self.address, r"^http://127\.0\.0\.1:\d+/[0-9a-f]{32}/$", self.studio.poll())
         self.origin = self.address.split("/")[0] + "//" + self.address.split("/")[2]
 
+    def check_page(self, browser):
+        """Nothing failed in the page; the icon of the tab is not there."""
+        self.assertEqual([e for e in browser.list_errors() if "favicon" not in e], [])
+
     def end_studio(self):
         if self.studio.poll() is None:
             self.studio.terminate()

@@ -89,7 +89,7 @@ class Units(ProgramTest):
             self.bough("plot", "run.h5", "--sensor", "place:x", "--psd", "--segment", "256", "--csv", "run.csv", "-o", "run.svg")
             text = self.read("run.svg")
             self.assertIn(f">{axis}<", text)
-            self.assertIn(density, text)
+            self.assertIn(density.replace("^2", "²"), text)
             curve = np.genfromtxt(self.path("run.csv"), delimiter=",", skip_header=1)[:, 1:]
             with h5py.File(self.path("run.h5")) as f:
                 variance = np.var(f["sensors/place"][:, 0])

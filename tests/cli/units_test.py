@@ -47,6 +47,22 @@ class TestUnits(ProgramTest):
             for found, right in zip(self.run_all(size), expected):
                 self.assertLess(np.abs(found - right).max(), 1e-6 * np.abs(right).max(), size)
 
+    def test_residual_vectors_at_a_rigid_interface(self):
+        """Forces and moments on the independent grid of an RBE2, which has no stiffness itself."""
+        found = {}
+        for size in (1e-6, 1e-3, 1, 1e3, 1e6):
+            deck = write_panel(size).replace("SPC1,1,123456,1,5,9,13\n", "")
+            deck = "SOL 103\nCEND\n" + deck[deck.index("BEGIN BULK"):]
+            self.write("p.bdf", deck.replace("RBE2,200,16,123456,99", "RBE2,200,99,123456,16,12,15"))
+            self.write("b.toml", '[body]\nname = "b"\ndeck = "p.bdf"\nframe = "mean"\ninterface = [99]\n'
+                       '[body.modes]\nnumber = 3\nresidual = ["interface"]\n')
+            self.assertNotIn("residual-massless", self.bough("reduce", "b.toml", "-o", "b.h5").stderr)
+            with h5py.File(self.path("b.h5")) as f:
+                found[size] = size * f["modes/frequency_hz"][:]
+        self.assertEqual(found[1].size, 9)
+        for size, hz in found.items():
+            np.testing.assert_allclose(hz, found[1], rtol=1e-5, err_msg=str(size))
+
     def test_a_loose_panel_is_loose_in_every_size(self):
         for size in (1e-9, 1e-4, 1, 1e8):
             self.write("p.bdf", write_panel(size).replace("SPC1,1,123456,1,5,9,13", "SPC1,1,1346,1,5,9,13"))

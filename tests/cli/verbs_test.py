@@ -218,5 +218,24 @@ class Run(ProgramTest):
         self.assertIn("complete already", self.bough("run", "spring.toml", "-o", "parts.h5", "--resume", env=quiet).stdout)
 
 
+class Info(ProgramTest):
+    def test_arrays_unlike_the_layout_are_named(self):
+        self.write("beam.bdf", BEAM)
+        self.bough("reduce", "beam.bdf", "-n", "2", "-o", "b.h5")
+        whole = self.bough("info", "b.h5").stdout
+        self.assertNotIn("not as the layout", whole)
+        self.assertNotIn("faults", json.loads(self.bough("info", "b.h5", "--json").stdout))
+        with h5py.File(self.path("b.h5"), "r+") as f:
+            del f["modal/mass"], f["modes/frequency_hz"].attrs["description"], f["modes/frequency_hz"].attrs["dims"]
+            del f["modal/damping"]
+            f["modal/damping"] = np.zeros((2, 3))
+        faults = ["/modal/mass is missing, expected 2 x 2", "/modal/damping has the shape 2 x 3, expected 2 x 2"]
+        text = self.bough("info", "b.h5").stdout
+        self.assertTrue(text.endswith("not as the layout of the format:\n  " + "\n  ".join(faults) + "\n"), text)
+        self.assertIn("natural frequency, cycles per unit of time [1/T]", text, "the description that the file lacks")
+        self.assertEqual(json.loads(self.bough("info", "b.h5", "--json").stdout)["faults"], faults)
+        self.fails(1, "check", "b.h5", says=["/modal/mass is missing", "/modal/damping has the shape 2 x 3"])
+
+
 if __name__ == "__main__":
     unittest.main()

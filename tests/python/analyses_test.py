@@ -90,6 +90,25 @@ class Analyses(InExample):
         with self.assertRaisesRegex(bough.InputError, "cannot read --load"):
             bough.reduce("boom.bdf", modes=3, loads="here")
 
+    def test_outputs_of_reduce(self):
+        subprocess.run([PROGRAM, "reduce", "boom.bdf", "-n3", "-q", "-o", "c.h5", "--loads-deck", "c.bdf", "--loads-set",
+                        "201"], check=True)
+        body = bough.reduce("boom.bdf", modes=3, loads_deck="p.bdf", loads_set=201)
+        with open("p.bdf", encoding="utf-8") as found, open("c.bdf", encoding="utf-8") as expected:
+            self.assertEqual(found.read(), expected.read())
+        subprocess.run([PROGRAM, "compare", "c.h5", "-q", "-o", "report.h5"], check=True)
+        found, expected = bough.compare(body), bough.reader.read("report.h5")
+        self.assertEqual(sorted(found), sorted(expected))
+        for name in found:
+            np.testing.assert_array_equal(np.ravel(found[name]), np.ravel(expected[name]), err_msg=name)
+        with self.assertRaisesRegex(ValueError, "loads_set is the first of twelve load sets, 1 to 99999988, not 0"):
+            bough.reduce("boom.bdf", modes=3, loads_deck="p.bdf", loads_set=0)
+        with self.assertRaisesRegex(ValueError, "a FlexBody is compared with no other file"):
+            bough.compare(body, sensors=3)
+        with self.assertRaises(bough.InputError) as caught:
+            bough.reduce("boom.bdf", modes=3, loads_deck="boom.bdf")
+        self.assertEqual(caught.exception.messages[0].id, "cli.output-is-input")
+
     def test_matrices_of_another_program(self):
         bough.call("matrices", "boom.bdf", "-o", "k.h5", "-q")
         expected = bough.reduce("boom.bdf", modes=3).frequency_hz

@@ -82,6 +82,12 @@ class Commands(InExample):
         with open("tip.csv", encoding="utf-8") as f:
             self.assertEqual(f.read(), one)
         self.assertEqual(bough.export("boom.h5", "gltf")[:4], b"glTF")
+        self.assertEqual(bough.export("boom.h5", "sid", inertia="3x3", ge_order="component", digits=9),
+                         self.command("export", "boom.h5", "--to", "sid", "--inertia", "3x3", "--ge-order", "component",
+                                      "--digits", "9"))
+        for words in ({"inertia": "9x1"}, {"ge_order": "none"}, {"digits": 5}, {"vendor": "sc"}, {"unit": -1}):
+            with self.subTest(words), self.assertRaises(ValueError):
+                bough.export("boom.h5", "sid", **words)
         with self.assertRaisesRegex(ValueError, "mat needs an output"):
             bough.export("boom.h5", "mat")
         with self.assertRaisesRegex(bough.InputError, "cli.unknown-channel"):
@@ -136,6 +142,14 @@ class Commands(InExample):
         curve = found["plots"][0]["curves"][0]
         np.testing.assert_array_equal(curve["x"], bough.read_results("run.h5").time)
         self.assertTrue(found["csv"].startswith("curve,x,y\n"))
+        for options, words in (({"window": (1, 3), "y_min": -1, "y_max": 1.5}, ["--window", "1,3", "--y-min", "-1", "--y-max", "1.5"]),
+                               ({"psd": True, "segment": 64, "log_x": True}, ["--psd", "--segment", "64", "--log-x"])):
+            self.command("plot", "run.h5", "--sensor", "tip_deflection", "-o", "expected.svg", *words)
+            with open("expected.svg", encoding="utf-8") as f:
+                self.assertEqual(bough.plot("run.h5", "tip_deflection", **options)["svg"], f.read(), options)
+        for words in ({"y_min": 1}, {"window": (1,)}, {"inputs": "a"}, {"srs_part": "half"}, {"segment": 1}, {"q": 0.5}):
+            with self.subTest(words), self.assertRaises(ValueError):
+                bough.plot("run.h5", "tip_deflection", **words)
         page = bough.report(["run.h5", "boom.h5"], title="Spin-up")
         self.command("report", "run.h5", "boom.h5", "--title", "Spin-up", "-o", "expected.html")
         with open("expected.html", encoding="utf-8") as f:

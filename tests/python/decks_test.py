@@ -85,6 +85,23 @@ class Decks(InFolder):
         found = bough.transient("struck.bdf", number=3)
         self.assert_same_as_command(found, "transient", "struck.bdf", "-n", "3")
         self.assertEqual(found["subcases/1/displacement/value"].shape[0], 51)
+        bough.transient("struck.bdf", number=3, csv="p.csv", punch="p.pch")
+        self.run_command("transient", "struck.bdf", "-n", "3", "--csv", "c.csv", "--punch", "c.pch")
+        for suffix in ("csv", "pch"):
+            with open(f"p.{suffix}", encoding="utf-8") as own, open(f"c.{suffix}", encoding="utf-8") as expected:
+                self.assertEqual(own.read(), expected.read(), suffix)
+
+    def test_nonlinear_transient_is_solved_linearly_on_request(self):
+        self.write_driven("bent.bdf", "SOL 129\nCEND\nSPC = 1\nDLOAD = 15\nTSTEPNL = 17\n")
+        with open("bent.bdf", encoding="utf-8") as f:
+            text = f.read()
+        self.write("bent.bdf", text.replace("ENDDATA", "PARAM,LGDISP,1\nTSTEPNL,17,50,.01,1\nENDDATA"))
+        with self.assertRaises(bough.InputError):
+            bough.transient("bent.bdf", number=3)
+        found = bough.transient("bent.bdf", number=3, linear=True)
+        self.assert_same_as_command(found, "transient", "bent.bdf", "-n", "3", "--linear")
+        with self.assertRaisesRegex(TypeError, "transient\\(\\) has"):
+            bough.frequency("bent.bdf", linear=True)
 
     def test_split(self):
         found = bough.split("boom.bdf", parts=2, name="mast", modes=3)

@@ -222,6 +222,11 @@ TEST(Bases, ErrorsOfTheSpec) {
   EXPECT_EQ(get_errors(maker.deck, spec), std::vector<std::string>{"modal.bad-frame"});
   spec.frame_nodes = {77};
   EXPECT_EQ(get_errors(maker.deck, spec), std::vector<std::string>{"reduce.unknown-node"});
+  for (const auto frame : {BodyFrame::Fixed, BodyFrame::Free, BodyFrame::MeanAxes, BodyFrame::ThreeNodes}) {
+    spec = make_spec(frame);
+    spec.frame_nodes = {4};
+    EXPECT_EQ(get_errors(maker.deck, spec), std::vector<std::string>{"modal.bad-frame"});
+  }
   spec = make_spec(BodyFrame::Fixed);
   spec.damping_table.points = {{1, 0.1}, {2, 0.05}};  // below zero further on
   EXPECT_EQ(get_errors(maker.deck, spec), std::vector<std::string>{"reduce.bad-damping"});

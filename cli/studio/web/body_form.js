@@ -19,7 +19,7 @@ export function make_body_form(studio, deck, on_change) {
   const list = el("output", { class: "chosen", "aria-label": "interface nodes" });
   const number = el("input", { type: "number", min: 0, max: 1000, step: 1, value: 10, "aria-label": "number of modes" });
   const update = () => {
-    list.replaceChildren(...(grids.length === 0 ? [el("span", { class: "note" }, "none: click grids")] : grids.map((g) => make_button(`${g} ✕`, "Leave this grid out", () => {
+    list.replaceChildren(...(grids.length === 0 ? [el("span", { class: "note" }, "none: click grids, or find one by its id")] : grids.map((g) => make_button(`${g} ✕`, "Leave this grid out", () => {
       grids.splice(grids.indexOf(g), 1);
       update();
     }))));
@@ -58,8 +58,9 @@ export function make_body_form(studio, deck, on_change) {
     el("div", { class: "tools" }, make_select("frame", kFrames, (i) => (frame = i)), make_select("basis", kBases, (i) => (basis = i)), el("label", {}, "modes ", number)),
     el("div", { class: "tools" }, make_select("in the system", kJoints, (i) => (joint = i)), button));
   update();
-  const take = (grid) => {
-    if (!is_picking || grids.includes(grid)) return;
+  /** @param {number} grid  @param {boolean} is_asked  clicks count by the check box, a button always */
+  const take = (grid, is_asked = false) => {
+    if (!(is_picking || is_asked) || grids.includes(grid)) return;
     grids.push(grid);
     update();
   };

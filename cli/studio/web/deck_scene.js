@@ -148,7 +148,7 @@ export class DeckScene {
     }
     if (show.supports && answer.supports.length > 0) {
       const seen = new Map(answer.supports.map((s) => [s.grid, s]));
-      things.push(this.make_symbols(this.list_places([...seen.values()], () => 0.009 * size), kCone, get_css("--applied")));
+      things.push(this.make_symbols(this.list_places([...seen.values()], () => 0.009 * size), kCone, get_css("--hinge")));
     }
     if (show.loads && answer.loads.length > 0) {
       for (const is_moment of [false, true]) {

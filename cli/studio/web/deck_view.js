@@ -52,7 +52,8 @@ export class DeckStage {
   }
 }
 
-const kSymbols = [["sections", "bar sections"], ["pins", "pin flags"], ["masses", "masses"], ["spiders", "rigid elements"], ["supports", "SPC"], ["loads", "loads"], ["systems", "coordinate systems"], ["edges", "edges"]];
+// Key, text and colour of each symbol of a deck.
+const kSymbols = [["sections", "bar sections"], ["pins", "pin flags", "hinge"], ["masses", "masses", "sensor"], ["spiders", "rigid elements", "reaction"], ["supports", "SPC", "hinge"], ["loads", "loads", "applied"], ["systems", "coordinate systems"], ["edges", "edges"]];
 
 export class DeckView {
   constructor(studio, file, answer) {
@@ -129,7 +130,8 @@ export class DeckView {
   name_grid(grid) {
     const { scene } = this.stage, k = scene.point_of_grid.get(grid), row = scene.row_of_grid.get(grid);
     const parts = this.answer.num_parts > 1 ? `, part ${scene.grids.part[row]} of ${this.answer.num_parts}` : "";
-    return [el("strong", {}, `grid ${grid}`), ` ${scene.describe_place(k)}${parts} `, make_button("card", "Show the card in the deck", () => this.show_card(scene.grids.file[row], scene.grids.line[row]))];
+    return [el("strong", {}, `grid ${grid}`), ` ${scene.describe_place(k)}${parts} `, make_button("card", "Show the card in the deck", () => this.show_card(scene.grids.file[row], scene.grids.line[row])), " ",
+      make_button("interface", "Make it an interface node, as one that elements hide", () => this.form.take(grid, true))];
   }
 
   name_element(row) {
@@ -246,10 +248,14 @@ export class DeckView {
       this.list_groups();
       this.stage.draw();
     });
-    const boxes = kSymbols.map(([key, text]) => make_check(text, scene.show[key], (on) => {
-      scene.show[key] = on;
-      this.stage.draw();
-    }));
+    const boxes = kSymbols.map(([key, text, color]) => {
+      const label = make_check(text, scene.show[key], (on) => {
+        scene.show[key] = on;
+        this.stage.draw();
+      });
+      if (color) label.append(" ", el("span", { class: "swatch " + color, "aria-hidden": "true" }));
+      return label;
+    });
     const all = (on) => () => this.show_groups(scene.groups.map((g) => g.name), on);
     return el("section", {}, el("h3", {}, "Show"), el("div", { class: "tools" }, choose, make_button("all", "Show all groups", all(true)), make_button("none", "Hide all groups", all(false))), this.groups, el("div", { class: "tools" }, ...boxes), el("p", { class: "note" }, scene.thinned.join("; ")));
   }

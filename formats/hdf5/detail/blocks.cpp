@@ -8,9 +8,9 @@ namespace bough::hdf5 {
 records::BodyMesh read_mesh(FileReader& file) {
   records::BodyMesh mesh;
   if (!file.has("/mesh")) return mesh;
-  mesh.grid_id = file.read_integers("/mesh/grid_id", -1);
+  mesh.grid_id = file.read_integers("/mesh/grid_id");
   const auto num_grids = static_cast<long>(mesh.grid_id.size());
-  mesh.grid_xyz = file.read_matrix("/mesh/grid_xyz", num_grids, 3);
+  mesh.grid_xyz = file.read_matrix("/mesh/grid_xyz");
   std::vector<std::pair<int, std::string>> order;
   for (const auto& name : file.get_children("/mesh/elements")) {
     order.emplace_back(file.read_integer_attribute("/mesh/elements/" + name, "order", 0), name);
@@ -20,8 +20,8 @@ records::BodyMesh read_mesh(FileReader& file) {
     const std::string path = "/mesh/elements/" + name;
     records::BodyMesh::Block block;
     block.type = file.read_attribute(path, "type");
-    block.connectivity = file.read_integer_matrix(path + "/connectivity", -1, -1);
-    block.element_id = file.read_integers(path + "/id", block.connectivity.rows());
+    block.connectivity = file.read_integer_matrix(path + "/connectivity");
+    block.element_id = file.read_integers(path + "/id");
     if (block.connectivity.size() > 0 &&
         (block.connectivity.minCoeff() < 0 || block.connectivity.maxCoeff() >= num_grids)) {
       file.error("hdf5.value", path + "/connectivity points past the " + std::to_string(num_grids) + " grids",
@@ -45,9 +45,9 @@ std::vector<Eigen::MatrixXd> read_mode_shapes(FileReader& file, long num_nodes, 
   return phi;
 }
 
-std::vector<records::ModeKind> read_mode_kinds(FileReader& file, long num_modes) {
+std::vector<records::ModeKind> read_mode_kinds(FileReader& file) {
   std::vector<records::ModeKind> kinds;
-  for (const auto& word : file.read_strings("/modes/kind", num_modes)) {
+  for (const auto& word : file.read_strings("/modes/kind")) {
     kinds.push_back(word == "constraint"   ? records::ModeKind::Constraint
                     : word == "attachment" ? records::ModeKind::Attachment
                     : word == "residual"   ? records::ModeKind::Residual

@@ -30,33 +30,33 @@ void write_curves(FileWriter& file, const std::string& path, const records::Rand
   Dims columns{static_cast<hsize_t>(curves.rms.size())};
   if (of_elements) {
     columns = {static_cast<hsize_t>(curves.ids.size()), static_cast<hsize_t>(curves.components.size())};
-    file.write_integers(group + "/id", curves.ids, {"element ids", "1"});
+    file.write_integers(group + "/id", curves.ids);
   } else {
     Eigen::MatrixXi dofs(static_cast<Eigen::Index>(curves.dofs.size()), 2);
     for (Eigen::Index i = 0; i < dofs.rows(); ++i)
       dofs.row(i) << curves.dofs[static_cast<std::size_t>(i)].first, curves.dofs[static_cast<std::size_t>(i)].second;
-    file.write_integers(group + "/dofs", dofs,
-                        {"a row per column: grid and component 1..6 in its displacement (CD) axes, 0 scalar", "1"});
+    file.write_integers(group + "/dofs", dofs);
   }
   const auto units = get_units(curves);
-  const auto write_rows = [&](const char* name, const MatrixXd& values, const ArrayAttributes& attributes) {
+  file.set_text("unit", units.plain);
+  file.set_text("square", units.squared);
+  const auto write_rows = [&](const char* name, const MatrixXd& values) {
     if (values.size() == 0) return;
     Dims shape{static_cast<hsize_t>(values.rows())};
     shape.insert(shape.end(), columns.begin(), columns.end());
     const RowMajor rows = values;
-    file.write_numbers(group + "/" + name, shape, rows.data(), attributes);
+    file.write_numbers(group + "/" + name, shape, rows.data());
   };
-  const auto write_one = [&](const char* name, const VectorXd& values, const ArrayAttributes& attributes) {
-    if (values.size() > 0) file.write_numbers(group + "/" + name, columns, values.data(), attributes);
+  const auto write_one = [&](const char* name, const VectorXd& values) {
+    if (values.size() > 0) file.write_numbers(group + "/" + name, columns, values.data());
   };
-  write_rows("psd", curves.psd, {"one-sided spectral density, a row per frequency", units.squared});
-  write_rows("cumulative_rms", records::calc_cumulative_rms(response, curves),
-             {"RMS from the first frequency to each", units.plain});
-  write_rows("autocorrelation", curves.autocorrelation, {"a row per lag", "square of the unit of rms"});
-  write_one("rms", curves.rms, {"root mean square over the output frequencies", units.plain});
-  write_one("zero_crossings_hz", curves.crossing_hz, {"N0, zero crossings with positive slope", "1/T"});
-  write_one("modal_rms", curves.modal_rms, {"root mean square by integration over the band", units.plain});
-  write_one("modal_zero_crossings_hz", curves.modal_crossing_hz, {"N0 by integration over the band", "1/T"});
+  write_rows("psd", curves.psd);
+  write_rows("cumulative_rms", records::calc_cumulative_rms(response, curves));
+  write_rows("autocorrelation", curves.autocorrelation);
+  write_one("rms", curves.rms);
+  write_one("zero_crossings_hz", curves.crossing_hz);
+  write_one("modal_rms", curves.modal_rms);
+  write_one("modal_zero_crossings_hz", curves.modal_crossing_hz);
   if (of_elements) file.write_attribute(group, "components", curves.components);
 }
 
@@ -65,15 +65,13 @@ void write_cross(FileWriter& file, const std::string& group, const records::Rand
   dofs << cross.a.id, cross.a.component, cross.b.id, cross.b.component;
   file.make_group(group);
   file.write_attribute(group, "quantities", std::vector<std::string>{cross.a.quantity, cross.b.quantity});
-  file.write_integers(group + "/dofs", dofs, {"grid and component of a, then of b", "1"});
-  file.write_integers(group + "/curve", {cross.curve}, {"CURID of RCROSS, 0: none", "1"});
-  const std::string units = "unit of a times that of b";
-  file.write_vector(group + "/real", cross.psd.real(), {"of S_ab = E[A B*], one-sided", units + " times T"});
-  file.write_vector(group + "/imag", cross.psd.imag(), {"of S_ab", units + " times T"});
-  file.write_vector(group + "/coherence", cross.coherence, {"abs(S_ab)^2 / (S_aa S_bb)", "1"});
-  file.write_number(group + "/covariance", cross.covariance, {"E[a(t) b(t)] over the output frequencies", units});
-  if (cross.correlation.size() > 0)
-    file.write_vector(group + "/correlation", cross.correlation, {"E[a(t + lag) b(t)]", units});
+  file.write_integers(group + "/dofs", dofs);
+  file.write_integers(group + "/curve", {cross.curve});
+  file.write_vector(group + "/real", cross.psd.real());
+  file.write_vector(group + "/imag", cross.psd.imag());
+  file.write_vector(group + "/coherence", cross.coherence);
+  file.write_number(group + "/covariance", cross.covariance);
+  if (cross.correlation.size() > 0) file.write_vector(group + "/correlation", cross.correlation);
 }
 
 records::RandomCross read_cross(FileReader& file, const std::string& group, const records::RandomResponse& response) {
@@ -101,12 +99,10 @@ void write_random(FileWriter& file, const records::RandomResponse& response) {
   const std::string path = "/random/" + std::to_string(response.set);
   file.make_group(path);
   file.write_attribute(path, "integration", response.is_loglog ? "loglog" : "linear");
-  file.write_integers(path + "/subcases", response.subcases, {"whose loads RANDPS relates", "1"});
-  file.write_vector(path + "/frequency_hz", response.hz, {"frequency of each row", "1/T"});
-  if (response.lags.size() > 0) file.write_vector(path + "/lag", response.lags, {"of the autocorrelation", "T"});
-  if (response.integral_error >= 0)
-    file.write_number(path + "/integral_error", response.integral_error,
-                      {"relative, of the mean squares of the coordinates by integration over the band", "1"});
+  file.write_integers(path + "/subcases", response.subcases);
+  file.write_vector(path + "/frequency_hz", response.hz);
+  if (response.lags.size() > 0) file.write_vector(path + "/lag", response.lags);
+  if (response.integral_error >= 0) file.write_number(path + "/integral_error", response.integral_error);
   for (const auto& curves : response.curves) write_curves(file, path, response, curves);
   for (std::size_t k = 0; k < response.crosses.size(); ++k)
     write_cross(file, path + "/cross/" + std::to_string(k + 1), response.crosses[k]);

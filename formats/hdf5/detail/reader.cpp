@@ -125,6 +125,8 @@ void check_format(hid_t file, const std::string& path, const std::string& format
 FileReader::FileReader(const std::string& path, const std::string& format, const std::string& version)
     : path_(path), file_(open_file(path)) {
   check_format(file_.get(), path, format, version);
+  layout_ = find_layout(format);
+  if (layout_ != nullptr) counts_.emplace(*layout_);
 }
 
 FileReader::FileReader(const std::string& path) : path_(path), file_(open_file(path)) {}
@@ -133,7 +135,7 @@ void FileReader::error(const char* id, const std::string& what, const std::strin
   diagnostics_.error(id, {path_}, what, advice);
 }
 
-Handle FileReader::open_dataset(const std::string& path, const Shape& shape, H5T_class_t type, Dims& found) {
+Handle FileReader::find_dataset(const std::string& path, const Shape& shape, H5T_class_t type, Dims& found) {
   found = make_fallback(shape);
   Handle dataset(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.is_valid()) {
@@ -170,6 +172,30 @@ Handle FileReader::open_dataset(const std::string& path, const Shape& shape, H5T
   }
   found = dims;
   return dataset;
+}
+
+Handle FileReader::open_dataset(const std::string& path, const Shape& shape, H5T_class_t type, Dims& found) {
+  Handle dataset = find_dataset(path, shape, type, found);
+  // Counts of an array that cannot be read are those of its fallback, so that later arrays fit it.
+  if (const auto match = layout_ == nullptr ? std::nullopt : find_row(*layout_, path))
+    counts_->add(*match->row, path, Shape(found.begin(), found.end()));
+  return dataset;
+}
+
+Shape FileReader::get_shape(const std::string& path) const {
+  const auto match = layout_ == nullptr ? std::nullopt : find_row(*layout_, path);
+  BOUGH_DEMAND(match.has_value());
+  return counts_->get_shape(*match->row, path);
+}
+
+Eigen::MatrixXd FileReader::read_matrix(const std::string& path) {
+  const Shape shape = get_shape(path);
+  return read_matrix(path, shape.at(0), shape.at(1));
+}
+
+Eigen::MatrixXi FileReader::read_integer_matrix(const std::string& path) {
+  const Shape shape = get_shape(path);
+  return read_integer_matrix(path, shape.at(0), shape.at(1));
 }
 
 NumberArray FileReader::read_array(const std::string& path, const Shape& shape, bool may_be_nan, long most_rows) {

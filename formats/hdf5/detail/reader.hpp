@@ -7,6 +7,7 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/hdf5/detail/handle.hpp"
+#include "formats/hdf5/layouts.hpp"
 #include "formats/records/flex_body.hpp"
 
 namespace bough::hdf5 {
@@ -43,6 +44,21 @@ class FileReader {
   /// told, "hdf5.nan", and then return zeros of the expected shape (0 if it is open).
   /// If given, only the first `most_rows` of a longer array are read.
   NumberArray read_array(const std::string& path, const Shape& shape, bool may_be_nan = false, long most_rows = -1);
+  /// These take the expected shape from the row of the path in the layout of the format: named counts are those of the
+  /// arrays read before; a count that is not known yet may have any value, which it keeps. \pre the layout has the
+  /// path.
+  NumberArray read_array(const std::string& path) { return read_array(path, get_shape(path)); }
+  /// Vector of the layout's size.
+  Eigen::VectorXd read_vector(const std::string& path) { return read_vector(path, get_shape(path).at(0)); }
+  /// Matrix of the layout's rows and columns, row by row in the file.
+  Eigen::MatrixXd read_matrix(const std::string& path);
+  /// List of 32-bit integers of the layout's size.
+  std::vector<int> read_integers(const std::string& path) { return read_integers(path, get_shape(path).at(0)); }
+  /// Matrix of integers of the layout's rows and columns.
+  Eigen::MatrixXi read_integer_matrix(const std::string& path);
+  /// Texts, as many as the layout has.
+  std::vector<std::string> read_strings(const std::string& path) { return read_strings(path, get_shape(path)); }
+
   /// Vector of `size` numbers; -1: any.
   Eigen::VectorXd read_vector(const std::string& path, long size, bool may_be_nan = false);
   /// Matrix, row by row in the file; -1: any number.
@@ -77,11 +93,18 @@ class FileReader {
 
  private:
   /// The dataset if it is there with this shape and class; fills found.
+  Handle find_dataset(const std::string& path, const Shape& shape, H5T_class_t type, Dims& found);
+  /// Likewise; takes the counts of the layout from the shape.
   Handle open_dataset(const std::string& path, const Shape& shape, H5T_class_t type, Dims& found);
+
+  /// Shape of an array by its row; -1 for a count that is not known yet.
+  Shape get_shape(const std::string& path) const;
 
   QuietErrors quiet_;
   std::string path_;
   Handle file_;
+  const Layout* layout_ = nullptr;  ///< of the format; none for formats without a table
+  std::optional<LayoutCounts> counts_;
   Diagnostics diagnostics_;
 };
 
@@ -93,6 +116,6 @@ records::BodyMesh read_mesh(FileReader& file);
 /// Reads /modes/phi: for each node 6 x num_modes, translations first.
 std::vector<Eigen::MatrixXd> read_mode_shapes(FileReader& file, long num_nodes, long num_modes);
 /// Reads /modes/kind. Reports "hdf5.value" for an unknown kind.
-std::vector<records::ModeKind> read_mode_kinds(FileReader& file, long num_modes);
+std::vector<records::ModeKind> read_mode_kinds(FileReader& file);
 
 }  // namespace bough::hdf5

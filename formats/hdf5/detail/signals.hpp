@@ -8,11 +8,10 @@
 
 namespace bough::hdf5 {
 
-/// Writes the datasets name and dims below `group`. \param what  the signals in descriptions, "states".
-inline void write_signals(FileWriter& file, const std::string& group, const records::Signals& signals,
-                          const std::string& what) {
-  file.write_strings(group + "/name", signals.name, {"names of the " + what, "1"});
-  file.write_strings(group + "/dims", signals.dims, {"their dimensions in M L T F", "1"});
+/// Writes the datasets name and dims below `group`.
+inline void write_signals(FileWriter& file, const std::string& group, const records::Signals& signals) {
+  file.write_strings(group + "/name", signals.name);
+  file.write_strings(group + "/dims", signals.dims);
 }
 
 /// Reads the datasets name and dims, of equal length, below `group`.

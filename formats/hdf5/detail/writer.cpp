@@ -55,6 +55,7 @@ void FileWriter::open(const char* name, const Handle& access, const std::string&
   H5Pset_obj_track_times(group_creation_.get(), false);
   link_creation_ = Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(link_creation_.get(), 1);
+  layout_ = find_layout(format);
   file_ = Handle(H5Fcreate(name, H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   check(file_.is_valid(), "the file cannot be created");
   write_attribute("/", "format", format);
@@ -136,7 +137,14 @@ void FileWriter::write_attribute(const std::string& object, const std::string& n
   write_attribute(opened.get(), object, name, shape, file_type, memory_type, data);
 }
 
-void FileWriter::write_attributes(hid_t dataset, const std::string& path, const ArrayAttributes& attributes) {
+void FileWriter::write_attributes(hid_t dataset, const std::string& path, const ArrayAttributes& given) {
+  ArrayAttributes attributes = given;
+  if (attributes.description.empty()) {
+    const auto match = layout_ == nullptr ? std::nullopt : find_row(*layout_, path);
+    BOUGH_DEMAND(match.has_value());
+    attributes.description = match->fill_in(match->row->description, texts_);
+    if (attributes.dims.empty()) attributes.dims = match->fill_in(match->row->dims, texts_);
+  }
   for (const auto& [name, text] : {std::pair("description", &attributes.description), {"dims", &attributes.dims}}) {
     const char* data = text->c_str();
     write_attribute(dataset, path, name, Dims{}, string_type_.get(), string_type_.get(), &data);
@@ -306,8 +314,8 @@ void FileWriter::link(const std::string& path, const std::string& existing) {
 
 void write_mesh(FileWriter& file, const records::BodyMesh& mesh) {
   if (mesh.grid_id.empty()) return;
-  file.write_integers("/grids/id", mesh.grid_id, {"ids of all grids", "1"});
-  file.write_matrix("/grids/xyz", mesh.grid_xyz, {"their positions in the body frame", "L"});
+  file.write_integers("/grids/id", mesh.grid_id);
+  file.write_matrix("/grids/xyz", mesh.grid_xyz);
   file.link("/mesh/grid_id", "/grids/id");
   file.link("/mesh/grid_xyz", "/grids/xyz");
   std::vector<std::string> names;
@@ -317,9 +325,8 @@ void write_mesh(FileWriter& file, const records::BodyMesh& mesh) {
       name = block.type + "-" + std::to_string(k);
     }
     const std::string path = "/mesh/elements/" + name;
-    file.write_integers(path + "/connectivity", block.connectivity,
-                        {"a row per element: its grids as 0-based indices into /grids/id", "1"});
-    file.write_integers(path + "/id", block.element_id, {"element ids", "1"});
+    file.write_integers(path + "/connectivity", block.connectivity);
+    file.write_integers(path + "/id", block.element_id);
     file.write_attribute(path, "type", block.type);
     file.write_attribute(path, "order", static_cast<int>(names.size()));
     names.push_back(name);
@@ -333,16 +340,13 @@ void write_mode_shapes(FileWriter& file, const std::vector<Eigen::MatrixXd>& phi
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < num_modes; ++j) *data++ = node(i, j);
   };
-  file.write_items("/modes/phi", {phi.size(), 6, static_cast<hsize_t>(num_modes)}, fill,
-                   {"mode shapes at the output nodes: node, then translations x y z and rotations x y z, then mode; "
-                    "body axes",
-                    "L/E, 1/E"});
+  file.write_items("/modes/phi", {phi.size(), 6, static_cast<hsize_t>(num_modes)}, fill);
 }
 
 void write_mode_kinds(FileWriter& file, const std::vector<records::ModeKind>& kinds) {
   std::vector<std::string> words;
   for (const auto kind : kinds) words.emplace_back(records::get_name(kind));
-  file.write_strings("/modes/kind", words, {"normal, constraint, attachment or residual mode", "1"});
+  file.write_strings("/modes/kind", words);
 }
 
 }  // namespace bough::hdf5

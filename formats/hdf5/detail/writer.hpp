@@ -10,11 +10,14 @@
 
 #include "base/part_file.hpp"
 #include "formats/hdf5/detail/handle.hpp"
+#include "formats/hdf5/layouts.hpp"
 #include "formats/records/flex_body.hpp"
 
 namespace bough::hdf5 {
 
-/// Attributes of an array: text for its `description`, and its dimensions in M L T F for `dims`.
+/// Attributes of an array: text for its `description`, and its dimensions in M L T F for `dims`. An empty description,
+/// and empty dimensions with it, are those of the row of the array in the layout of the format (formats/hdf5/layouts),
+/// which must have one.
 struct ArrayAttributes {
   std::string description, dims;
 };
@@ -29,31 +32,39 @@ class FileWriter {
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
+  /// Sets the text of a name in braces of the layout's descriptions, before the arrays that have it.
+  void set_text(const std::string& name, const std::string& text) { texts_[name] = text; }
+
   /// Writes an array of doubles, last index fastest.
-  void write_numbers(const std::string& path, const Dims& shape, const double* data, const ArrayAttributes& attributes);
+  void write_numbers(const std::string& path, const Dims& shape, const double* data,
+                     const ArrayAttributes& attributes = {});
   /// Writes numbers that are not contiguous: fill(first, data) stores item `first` of the first dimension at `data`. A
   /// few megabytes at a time.
   void write_items(const std::string& path, const Dims& shape, const std::function<void(std::size_t, double*)>& fill,
-                   const ArrayAttributes& attributes);
+                   const ArrayAttributes& attributes = {});
   /// Single precision, for what is only drawn.
-  void write_floats(const std::string& path, const Dims& shape, const float* data, const ArrayAttributes& attributes);
+  void write_floats(const std::string& path, const Dims& shape, const float* data,
+                    const ArrayAttributes& attributes = {});
   /// Writes 32-bit integers, last index fastest.
-  void write_integers(const std::string& path, const Dims& shape, const int* data, const ArrayAttributes& attributes);
+  void write_integers(const std::string& path, const Dims& shape, const int* data,
+                      const ArrayAttributes& attributes = {});
   /// Writes texts of variable length in UTF-8.
-  void write_strings(const std::string& path, const std::vector<std::string>& data, const ArrayAttributes& attributes);
+  void write_strings(const std::string& path, const std::vector<std::string>& data,
+                     const ArrayAttributes& attributes = {});
 
   /// Writes one number as an array of length 1.
-  void write_number(const std::string& path, double value, const ArrayAttributes& attributes);
+  void write_number(const std::string& path, double value, const ArrayAttributes& attributes = {});
   /// Writes a vector as an array of one dimension.
-  void write_vector(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes);
+  void write_vector(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes = {});
   /// In chunks, of which those of zeros take no space.
-  void write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes);
+  void write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v,
+                               const ArrayAttributes& attributes = {});
   /// Writes a matrix row by row.
-  void write_matrix(const std::string& path, const Eigen::MatrixXd& m, const ArrayAttributes& attributes);
+  void write_matrix(const std::string& path, const Eigen::MatrixXd& m, const ArrayAttributes& attributes = {});
   /// Writes a list of 32-bit integers.
-  void write_integers(const std::string& path, const std::vector<int>& data, const ArrayAttributes& attributes);
+  void write_integers(const std::string& path, const std::vector<int>& data, const ArrayAttributes& attributes = {});
   /// Writes a matrix of 32-bit integers row by row.
-  void write_integers(const std::string& path, const Eigen::MatrixXi& m, const ArrayAttributes& attributes);
+  void write_integers(const std::string& path, const Eigen::MatrixXi& m, const ArrayAttributes& attributes = {});
 
   /// `object` "/" is the root.
   void write_attribute(const std::string& object, const std::string& name, const std::string& text);
@@ -97,6 +108,8 @@ class FileWriter {
 
   QuietErrors quiet_;
   std::string path_;
+  const Layout* layout_ = nullptr;  ///< of the format; none for formats without a table
+  LayoutTexts texts_;
   std::optional<PartFile> part_;  ///< none: in memory
   // Created once: these objects take most of the time of a small dataset.
   Handle string_type_, scalar_, creation_, group_creation_, link_creation_;

@@ -1,8 +1,9 @@
 /// \file Cards of complex eigenvalues. Source of the fields: MSC Nastran Quick Reference Guide, EIGC, TF, EPOINT.
-#include <algorithm>
-
+#include "formats/nastran/detail/card_sink.hpp"
 #include "formats/nastran/detail/dynamic_cards.hpp"
+#include "formats/nastran/detail/field_list.hpp"
 #include "formats/nastran/detail/unit_converter.hpp"
+#include "formats/nastran/detail/write_order.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -11,19 +12,20 @@ using records::ComplexMethod;
 using records::DynamicCards;
 using records::TransferFunction;
 
-/// SID METHOD NORM G C E ND, then lines of ALPHAA OMEGAA ALPHAB OMEGAB L NE ND; LAN has block sizes in place of the
+void list_eigc(FieldList& f, ComplexMethod& m) {
+  f.id("SID", m.sid).word("METHOD", m.method, "LAN", {"LAN", "CLAN", "HESS", "INV", "DET", "ISRR"});
+  f.word("NORM", m.norm, "MAX", {"MAX", "POINT"}).reference("G", m.norm_grid).component("C", m.norm_component);
+  f.field(
+      "E", [](Card&, int) {}, [](CardFields& out) { out.add_blank(); });
+  f.integer("ND", m.num_modes, 0);
+}
+
+/// The fields of list_eigc, then lines of ALPHAA OMEGAA ALPHAB OMEGAB L NE ND; LAN has block sizes in place of the
 /// second end.
 void parse_eigc(Card& card, DynamicCards& r) {
-  static const std::vector<std::string> methods{"LAN", "CLAN", "HESS", "INV", "DET", "ISRR"};
   ComplexMethod m;
-  m.sid = card.read_id(0, "SID");
-  m.method = card.read_word(1, "METHOD", "LAN", methods);
-  m.norm = card.read_word(2, "NORM", "MAX", {"MAX", "POINT"});
-  m.norm_grid = card.read_reference(3, "G");
-  m.norm_component = card.read_component(4, "C");
-  card.use(5);  // E: the residual of every pair is printed
-  m.num_modes = card.read_int(6, "ND", 0);
-  m.at = card.get_location();
+  read_fields(card, list_eigc, m);
+  card.use_unkept(5, 6);  // E: a limit of convergence
   card.demand(m.num_modes >= 0, 6, "ND", "zero or a positive integer");
   const bool has_ends = m.method == "INV" || m.method == "DET";
   for (int i = 8; i < card.get_size(); i += 8) {
@@ -36,7 +38,7 @@ void parse_eigc(Card& card, DynamicCards& r) {
       shift.alpha = (shift.alpha + card.read_real(i + 2, "ALPHAB", shift.alpha)) / 2;
       shift.omega = (shift.omega + card.read_real(i + 3, "OMEGAB", shift.omega)) / 2;
     }
-    card.use(i + 2, i + 6);
+    card.use_unkept(has_ends ? i + 4 : i + 2, i + 6);
     shift.num_modes = card.read_int(i + 6, "ND", 0);
     card.demand(shift.num_modes >= 0, i + 6, "ND", "zero or a positive integer");
     m.shifts.push_back(shift);
@@ -49,25 +51,48 @@ void parse_eigc(Card& card, DynamicCards& r) {
   add_unique(card, r.complex_methods, std::move(m), &ComplexMethod::sid);
 }
 
-TransferFunction::Term read_term(Card& card, int i, const char* g, const char* c, const char* const names[3]) {
-  return {card.read_id(i, g), card.read_component(i + 1, c), card.read_real(i + 2, names[0], 0.0),
-          card.read_real(i + 3, names[1], 0.0), card.read_real(i + 4, names[2], 0.0)};
+void list_tf(FieldList& f, TransferFunction& t) {
+  f.id("SID", t.sid).id("GD", t.of.g).component("CD", t.of.c);
+  f.real("B0", t.of.a0, 0.0).real("B1", t.of.a1, 0.0).real("B2", t.of.a2, 0.0);
+}
+TransferFunction::Term read_term(Card& card, int i) {
+  return {card.read_id(i, "G"), card.read_component(i + 1, "C"), card.read_real(i + 2, "A0", 0.0),
+          card.read_real(i + 3, "A1", 0.0), card.read_real(i + 4, "A2", 0.0)};
 }
 
-/// SID GD CD B0 B1 B2, then lines of G C A0 A1 A2.
+/// The fields of list_tf, then lines of G C A0 A1 A2.
 void parse_tf(Card& card, DynamicCards& r) {
-  static constexpr const char *of[] = {"B0", "B1", "B2"}, *with[] = {"A0", "A1", "A2"};
   TransferFunction f;
-  f.sid = card.read_id(0, "SID");
-  f.of = read_term(card, 1, "GD", "CD", of);
-  f.at = card.get_location();
+  read_fields(card, list_tf, f);
   for (int i = 8; i < card.get_size(); i += 8)
-    if (!card.is_blank(i, i + 8)) f.terms.push_back(read_term(card, i, "G", "C", with));
+    if (!card.is_blank(i, i + 8)) f.terms.push_back(read_term(card, i));
   if (card.is_ok()) r.transfer_functions.push_back(std::move(f));
 }
 
 void parse_epoint(Card& card, DynamicCards& r) {
   for (const int id : read_ids(card, 0, card.get_size(), "ID")) r.extra_points.insert(id);
+}
+
+/// A region between two ends is written as the shift at its middle, which it is read as.
+void write_complex_methods(const DynamicCards& cards, CardSink& sink) {
+  for (const auto& m : cards.complex_methods) {
+    auto card = make_fields("EIGC", list_eigc, m);
+    for (const auto& shift : m.shifts) {
+      card.end_line().add(shift.alpha).add(shift.omega).add_blank(4);
+      card.add_id(shift.num_modes);
+    }
+    sink.put(card);
+  }
+}
+void write_transfer_functions(const DynamicCards& cards, CardSink& sink) {
+  for (const auto& f : cards.transfer_functions) {
+    auto card = make_fields("TF", list_tf, f);
+    for (const auto& term : f.terms) card.end_line().add(term.g).add(term.c).add(term.a0).add(term.a1).add(term.a2);
+    sink.put(card);
+  }
+}
+void write_extra_points(const DynamicCards& cards, CardSink& sink) {
+  for (const int id : cards.extra_points) sink.put(CardFields("EPOINT").add(id));
 }
 
 /// Shifts, or ends and width of regions; LAN and CLAN have block sizes there.
@@ -84,9 +109,18 @@ void convert_tf(UnitConverter& u) {
 }  // namespace
 
 const DynamicParserTable& get_complex_parsers() {
-  static const DynamicParserTable table{{"EIGC", {parse_eigc, nullptr, convert_eigc}},
-                                        {"TF", {parse_tf, nullptr, convert_tf}},
-                                        {"EPOINT", {parse_epoint, ""}}};
+  static const DynamicParserTable table = [] {
+    DynamicParserTable t;
+    t["EIGC"] = {parse_eigc, nullptr, convert_eigc};
+    t["EIGC"].names = name_fields(list_eigc);
+    t["TF"] = {parse_tf, nullptr, convert_tf};
+    t["TF"].names = name_fields(list_tf);
+    t["EPOINT"] = {parse_epoint, ""};
+    set_writer(t, write_complex_methods, {"EIGC"});
+    set_writer(t, write_transfer_functions, {"TF"});
+    set_writer(t, write_extra_points, {"EPOINT"});
+    return t;
+  }();
   return table;
 }
 

@@ -174,6 +174,7 @@ void parse_solid(Card& card, Reading& r, int corners, int edges) {
 void parse_hexa(Card& card, Reading& r) { parse_solid(card, r, 8, 12); }
 void parse_penta(Card& card, Reading& r) { parse_solid(card, r, 6, 9); }
 void parse_tetra(Card& card, Reading& r) { parse_solid(card, r, 4, 6); }
+void parse_pyram(Card& card, Reading& r) { parse_solid(card, r, 5, 8); }
 
 void write_pshell(const records::Pshell& p, CardSink& sink) {
   CardFields card("PSHELL");
@@ -305,11 +306,12 @@ void add_continuum_parsers(ParserTable& table) {
   table["CHEXA"] = {parse_hexa, ""};
   table["CPENTA"] = {parse_penta, ""};
   table["CTETRA"] = {parse_tetra, ""};
+  table["CPYRAM"] = {parse_pyram, ""};
   write_by(table, write_pshells, {"PSHELL"});
   write_by(table, write_pcomps, {"PCOMP"});
   write_as(table, "PCOMP", {"PCOMPG", "PCOMP1", "PCOMP2"});
   write_by(table, write_psolids, {"PSOLID"});
-  write_by(table, write_solids, {"CHEXA", "CPENTA", "CTETRA"});
+  write_by(table, write_solids, {"CHEXA", "CPENTA", "CTETRA", "CPYRAM"});
 }
 
 }  // namespace bough::nastran::detail

@@ -1,11 +1,13 @@
 /// Loads over frequency and time. Source of the fields: MSC Nastran Quick Reference Guide, the entries named.
-#include <algorithm>
-#include <cmath>
+#include <iterator>
 
+#include "formats/nastran/detail/card_sink.hpp"
 #include "formats/nastran/detail/dynamic_cards.hpp"
+#include "formats/nastran/detail/field_list.hpp"
 #include "formats/nastran/detail/parsers.hpp"
 #include "formats/nastran/detail/text.hpp"
 #include "formats/nastran/detail/unit_converter.hpp"
+#include "formats/nastran/detail/write_order.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -13,17 +15,11 @@ namespace {
 using records::DynamicCards;
 using records::DynamicLoad;
 
-/// A set where the field is an integer, else a number.
-void read_set_or_number(Card& card, int i, const char* what, int& set, double& value) {
-  if (card.is_integer(i))
-    set = card.read_reference(i, what);
-  else
-    value = card.read_real(i, what, 0.0);
-}
+constexpr const char* kExcitations[] = {"LOAD", "DISP", "VELO", "ACCE"};
 
 /// TYPE: 0 to 3, or the first letters of LOAD, DISP, VELO, ACCE.
 DynamicLoad::Excitation read_excitation(Card& card, int i) {
-  static const std::vector<std::string> words{"LOAD", "DISP", "VELO", "ACCE"};
+  static const std::vector<std::string> words(std::begin(kExcitations), std::end(kExcitations));
   const auto word = card.get_upper(i);
   for (int kind = 0; kind < 4; ++kind)
     if (word == std::to_string(kind) || (!word.empty() && words[static_cast<std::size_t>(kind)].starts_with(word)))
@@ -32,13 +28,37 @@ DynamicLoad::Excitation read_excitation(Card& card, int i) {
   return DynamicLoad::Excitation::Force;
 }
 
-DynamicLoad read_head(Card& card, DynamicLoad::Kind kind) {
+FieldList& list_excitation(FieldList& f, DynamicLoad& load) {
+  return f.field(
+      "TYPE", [&](Card& card, int i) { load.excitation = read_excitation(card, i); },
+      [&](CardFields& out) { out.add_word(kExcitations[static_cast<int>(load.excitation)]); });
+}
+FieldList& list_head(FieldList& f, DynamicLoad& load) {
+  return f.id("SID", load.sid).id("EXCITEID", load.excite).set_or_real("DELAY", load.delay_set, load.delay);
+}
+void list_rload1(FieldList& f, DynamicLoad& load) {
+  list_head(f, load).set_or_real("DPHASE", load.phase_set, load.phase_deg);
+  f.set_or_real("TC", load.table_a, load.a).set_or_real("TD", load.table_b, load.b);
+  list_excitation(f, load);
+}
+void list_rload2(FieldList& f, DynamicLoad& load) {
+  list_head(f, load).set_or_real("DPHASE", load.phase_set, load.phase_deg);
+  f.set_or_real("TB", load.table_a, load.a).set_or_real("TP", load.table_b, load.b);
+  list_excitation(f, load);
+}
+void list_tload1(FieldList& f, DynamicLoad& load) {
+  list_excitation(list_head(f, load), load).set_or_real("TID", load.table_a, load.a);
+}
+void list_tload2(FieldList& f, DynamicLoad& load) {
+  list_excitation(list_head(f, load), load).real("T1", load.t1, 0.0).real("T2", load.t2);
+  f.real("F", load.frequency_hz, 0.0).real("P", load.phase_deg, 0.0);
+  f.real("C", load.growth, 0.0).real("B", load.power, 0.0);
+}
+
+DynamicLoad read_load(Card& card, DynamicLoad::Kind kind, void (*list)(FieldList&, DynamicLoad&)) {
   DynamicLoad load;
   load.kind = kind;
-  load.sid = card.read_id(0, "SID");
-  load.excite = card.read_id(1, "EXCITEID");
-  read_set_or_number(card, 2, "DELAY", load.delay_set, load.delay);
-  load.at = card.get_location();
+  read_fields(card, list, load);
   return load;
 }
 
@@ -46,27 +66,15 @@ void add_load(Card& card, DynamicCards& r, DynamicLoad load) {
   add_unique(card, r.loads, load, &std::remove_reference_t<decltype(load)>::sid);
 }
 
-/// The fields of RLOAD1 and RLOAD2, whose two functions of frequency have the names `a` and `b`.
-DynamicLoad read_frequency_load(Card& card, DynamicLoad::Kind kind, const char* a, const char* b) {
-  auto load = read_head(card, kind);
-  read_set_or_number(card, 3, "DPHASE", load.phase_set, load.phase_deg);
-  read_set_or_number(card, 4, a, load.table_a, load.a);
-  read_set_or_number(card, 5, b, load.table_b, load.b);
-  load.excitation = read_excitation(card, 6);
-  return load;
-}
-
-/// SID EXCITEID DELAY DPHASE TC TD TYPE.
 void parse_rload1(Card& card, DynamicCards& r) {
-  const auto load = read_frequency_load(card, DynamicLoad::Kind::Rload1, "TC", "TD");
+  const auto load = read_load(card, DynamicLoad::Kind::Rload1, list_rload1);
   if (card.is_ok() && card.is_blank(4, 6))
     card.fail("deck.missing-field", 4, "TC and TD are blank, expected a table or a number at least");
   add_load(card, r, load);
 }
 
-/// SID EXCITEID DELAY DPHASE TB TP TYPE.
 void parse_rload2(Card& card, DynamicCards& r) {
-  const auto load = read_frequency_load(card, DynamicLoad::Kind::Rload2, "TB", "TP");
+  const auto load = read_load(card, DynamicLoad::Kind::Rload2, list_rload2);
   card.demand(!card.is_blank(4), 4, "TB", "a table or a number");
   add_load(card, r, load);
 }
@@ -85,38 +93,28 @@ void refuse_start(Card& card, int first, DynamicLoad::Excitation excitation) {
   }
 }
 
-/// SID EXCITEID DELAY TYPE TID US0 VS0.
+/// The fields of list_tload1, US0 and VS0.
 void parse_tload1(Card& card, DynamicCards& r) {
-  auto load = read_head(card, DynamicLoad::Kind::Tload1);
-  load.excitation = read_excitation(card, 3);
-  read_set_or_number(card, 4, "TID", load.table_a, load.a);
+  const auto load = read_load(card, DynamicLoad::Kind::Tload1, list_tload1);
   card.demand(!card.is_blank(4), 4, "TID", "a table or a number");
   refuse_start(card, 5, load.excitation);
   add_load(card, r, load);
 }
 
-/// SID EXCITEID DELAY TYPE T1 T2 F P, C B US0 VS0.
+/// The fields of list_tload2, US0 and VS0.
 void parse_tload2(Card& card, DynamicCards& r) {
-  auto load = read_head(card, DynamicLoad::Kind::Tload2);
-  load.excitation = read_excitation(card, 3);
-  card.read_reals(4, {{"T1", load.t1, 0.0},
-                      {"T2", load.t2, {}},
-                      {"F", load.frequency_hz, 0.0},
-                      {"P", load.phase_deg, 0.0},
-                      {"C", load.growth, 0.0},
-                      {"B", load.power, 0.0}});
+  const auto load = read_load(card, DynamicLoad::Kind::Tload2, list_tload2);
   if (card.is_ok()) card.demand(load.t2 > load.t1, 5, "T2", "a time after T1");
   if (card.is_ok()) card.demand(load.power >= 0, 9, "B", "zero or above");
   refuse_start(card, 10, load.excitation);
   add_load(card, r, load);
 }
 
+void list_dload(FieldList& f, records::DynamicLoadSum& sum) { f.id("SID", sum.sid).real("S", sum.s); }
 void parse_dload(Card& card, DynamicCards& r) {
   records::DynamicLoadSum sum;
-  sum.sid = card.read_id(0, "SID");
-  sum.s = card.read_real(1, "S");
+  read_fields(card, list_dload, sum);
   sum.terms = read_load_terms(card);
-  sum.at = card.get_location();
   add_unique(card, r.sums, std::move(sum), &std::remove_reference_t<decltype(sum)>::sid);
 }
 
@@ -137,392 +135,53 @@ void parse_darea(Card& card, DynamicCards& r) { parse_values(card, r.areas, "A")
 void parse_delay(Card& card, DynamicCards& r) { parse_values(card, r.delays, "T"); }
 void parse_dphase(Card& card, DynamicCards& r) { parse_values(card, r.phases, "TH"); }
 
+void list_lseq(FieldList& f, records::StaticExcitation& s) {
+  f.id("SID", s.sid).id("EXCITEID", s.excite).reference("LID", s.load).reference("TID", s.temperature);
+}
 void parse_lseq(Card& card, DynamicCards& r) {
   records::StaticExcitation s;
-  card.read_ids(0, {{"SID", s.sid}, {"EXCITEID", s.excite}});
-  s.load = card.read_reference(2, "LID");
-  s.temperature = card.read_reference(3, "TID");
-  s.at = card.get_location();
+  read_fields(card, list_lseq, s);
   if (card.is_ok()) r.lseq.push_back(s);
 }
 
+void list_tic(FieldList& f, records::InitialMotion& m) {
+  f.id("SID", m.sid).id("G", m.g).component("C", m.c).real("U0", m.u0, 0.0).real("V0", m.v0, 0.0);
+}
 void parse_tic(Card& card, DynamicCards& r) {
   records::InitialMotion m;
-  card.read_ids(0, {{"SID", m.sid}, {"G", m.g}});
-  m.c = card.read_component(2, "C");
-  card.read_reals(3, {{"U0", m.u0, 0.0}, {"V0", m.v0, 0.0}});
-  m.at = card.get_location();
+  read_fields(card, list_tic, m);
   if (card.is_ok()) r.initial.push_back(m);
 }
 
-/// Pairs from field `first` on, up to ENDT; ascending, unchanged or reversed.
-std::vector<std::pair<double, double>> read_points(Card& card, int first) {
-  std::vector<std::pair<double, double>> points;
-  bool has_end = false;
-  for (int i = first; i < card.get_size() && card.is_ok(); i += 2) {
-    card.use(i, i + 2);
-    if (card.is_word(i, "ENDT") || card.is_word(i + 1, "ENDT")) {
-      if (!card.is_word(i, "ENDT"))
-        card.fail("deck.missing-field", i + 1, "ENDT is in place of y, expected the end after a pair x y");
-      card.use(i, card.get_size());
-      has_end = true;
-      break;
-    }
-    if (card.is_blank(i, i + 2) || card.is_word(i, "SKIP") || card.is_word(i + 1, "SKIP")) continue;
-    const double x = card.read_real(i, "x");
-    points.emplace_back(x, card.read_real(i + 1, "y"));
+void write_dynamic_loads(const DynamicCards& cards, CardSink& sink) {
+  using Kind = DynamicLoad::Kind;
+  for (const auto& load : cards.loads)
+    sink.put(load.kind == Kind::Rload1   ? make_fields("RLOAD1", list_rload1, load)
+             : load.kind == Kind::Rload2 ? make_fields("RLOAD2", list_rload2, load)
+             : load.kind == Kind::Tload1 ? make_fields("TLOAD1", list_tload1, load)
+                                         : make_fields("TLOAD2", list_tload2, load));
+}
+void write_dloads(const DynamicCards& cards, CardSink& sink) {
+  for (const auto& sum : cards.sums) {
+    auto card = make_fields("DLOAD", list_dload, sum);
+    for (const auto& [scale, set] : sum.terms) card.add(scale).add(set);
+    sink.put(card);
   }
-  if (!card.is_ok()) return points;
-  if (points.empty()) card.fail("deck.missing-field", first, "no pair x y is given, expected one at least");
-  if (!has_end && card.is_ok()) card.fail("deck.missing-field", first, "the table does not end with ENDT");
-  if (points.size() > 1 && points.front().first > points.back().first) std::reverse(points.begin(), points.end());
-  for (std::size_t i = 1; i < points.size() && card.is_ok(); ++i)
-    if (points[i].first < points[i - 1].first || (i > 1 && points[i].first == points[i - 2].first))
-      card.fail("deck.field-range", first, "x does not go in one direction, or stands more than twice");
-  return points;
 }
-
-/// Beyond its ends a table goes on along the line of its last two points, which a jump there does not have.
-void refuse_jumps_at_ends(Card& card, const std::vector<std::pair<double, double>>& points) {
-  const std::size_t n = points.size();
-  if (n < 2 || !card.is_ok()) return;
-  if (points[0].first == points[1].first || points[n - 2].first == points[n - 1].first)
-    card.fail("deck.field-range", 8,
-              "the table jumps at its first or last two points, between which it goes on beyond its ends; one point "
-              "more before or behind the jump says how");
-}
-
-template <class Record>
-Record read_kind_head(Card& card, int Record::*id, const char* what, int kind) {
-  Record record;
-  record.*id = card.read_id(0, what);
-  record.kind = kind;
-  record.at = card.get_location();
-  return record;
-}
-records::DynamicTable read_table_head(Card& card, int kind) {
-  return read_kind_head(card, &records::DynamicTable::id, "TID", kind);
-}
-void add_table(Card& card, DynamicCards& r, records::DynamicTable table) {
-  if (card.is_ok() && table.kind != 4 && table.points.size() < 2)
-    card.fail("deck.missing-field", 10, "the table has one pair x y, expected two at least");
-  add_unique(card, r.tables, std::move(table), &std::remove_reference_t<decltype(table)>::id);
-}
-
-/// Adds a table with the pairs of its card from the second line on.
-void add_table_of_points(Card& card, DynamicCards& r, records::DynamicTable table) {
-  table.points = read_points(card, 8);
-  refuse_jumps_at_ends(card, table.points);
-  add_table(card, r, std::move(table));
-}
-
-/// XAXIS YAXIS and how the table goes on beyond its ends, pairs from the second line on.
-void read_axes(Card& card, records::DynamicTable& t, const char* beyond_name) {
-  t.is_log_x = card.read_word(1, "XAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
-  t.is_log_y = card.read_word(2, "YAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
-  const int beyond = card.read_int(3, beyond_name, 0);
-  if (card.is_ok())
-    card.demand(beyond == 0 || beyond == 1, 3, beyond_name, "0 (the last line goes on) or 1 (end values)");
-  t.is_flat = beyond == 1;
-  t.points = read_points(card, 8);
-  if (!t.is_flat) refuse_jumps_at_ends(card, t.points);
-  for (const auto& [x, y] : t.points)
-    if (card.is_ok() && ((t.is_log_x && x <= 0) || (t.is_log_y && y <= 0)))
-      card.fail("deck.field-range", 8, "a LOG axis has a value that is not above 0");
-}
-
-/// TID XAXIS YAXIS, pairs from the second line on.
-void parse_tabled1(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 1);
-  read_axes(card, t, "EXTRAP");
-  add_table(card, r, std::move(t));
-}
-void parse_tabled2(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 2);
-  t.x1 = card.read_real(1, "X1", 0.0);
-  add_table_of_points(card, r, std::move(t));
-}
-void parse_tabled3(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 3);
-  card.read_reals(1, {{"X1", t.x1, 0.0}, {"X2", t.x2}});
-  if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
-  add_table_of_points(card, r, std::move(t));
-}
-void parse_tabled4(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 4);
-  card.read_reals(1, {{"X1", t.x1, 0.0}, {"X2", t.x2}, {"X3", t.x3}, {"X4", t.x4}});
-  if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
-  if (card.is_ok()) card.demand(t.x4 > t.x3, 4, "X4", "a number above X3");
-  for (int i = 8; i < card.get_size() && card.is_ok(); ++i) {
-    if (card.is_word(i, "ENDT")) {
-      card.use(i, card.get_size());
-      break;
-    }
-    t.coefficients.push_back(card.read_real(i, "Ai", 0.0));
-  }
-  if (card.is_ok() && t.coefficients.empty()) card.fail("deck.missing-field", 8, "no coefficient is given");
-  add_table(card, r, std::move(t));
-}
-
-void parse_tabdmp1(Card& card, DynamicCards& r) {
-  records::DampingCurve t;
-  t.id = card.read_id(0, "TID");
-  t.type = card.read_word(1, "TYPE", "G", {"G", "CRIT", "Q"});
-  t.at = card.get_location();
-  t.points = read_points(card, 8);
-  refuse_jumps_at_ends(card, t.points);
-  for (const auto& [hz, value] : t.points)
-    if (card.is_ok() && t.type == "Q" && value <= 0) card.fail("deck.field-range", 8, "a quality Q is not above 0");
-  add_unique(card, r.damping, std::move(t), &std::remove_reference_t<decltype(t)>::id);
-}
-
-records::FrequencyList read_list_head(Card& card, int kind) {
-  return read_kind_head(card, &records::FrequencyList::sid, "SID", kind);
-}
-void add_list(Card& card, DynamicCards& r, records::FrequencyList list) {
-  if (card.is_ok()) r.frequencies.push_back(std::move(list));
-}
-
-void parse_freq(Card& card, DynamicCards& r) {
-  auto list = read_list_head(card, 0);
-  for (int i = 1; i < card.get_size(); ++i) {
-    if (card.is_blank(i)) continue;
-    list.values.push_back(card.read_real(i, "F"));
-    if (card.is_ok()) card.demand(list.values.back() >= 0, i, "F", "zero or above");
-  }
-  if (card.is_ok() && list.values.empty()) card.fail("deck.missing-field", 1, "no frequency is given");
-  add_list(card, r, std::move(list));
-}
-/// SID F1 DF NDF.
-void parse_freq1(Card& card, DynamicCards& r) {
-  auto list = read_list_head(card, 1);
-  list.f1 = card.read_real(1, "F1");
-  list.f2 = card.read_real(2, "DF");
-  list.count = card.read_int(3, "NDF", 1);
-  if (card.is_ok()) card.demand(list.f1 >= 0, 1, "F1", "zero or above");
-  if (card.is_ok()) card.demand(list.f2 > 0, 2, "DF", "a number above 0");
-  if (card.is_ok()) card.demand(list.count > 0 && list.count <= 1'000'000, 3, "NDF", "1 to 1000000");
-  add_list(card, r, std::move(list));
-}
-/// SID F1 F2, and the further fields of FREQ2 to FREQ4.
-records::FrequencyList read_range(Card& card, int kind, bool starts_above_zero) {
-  auto list = read_list_head(card, kind);
-  list.f1 = kind == 4 ? card.read_real(1, "F1", 0.0) : card.read_real(1, "F1");
-  list.f2 = card.read_real(2, "F2", list.f1);
-  if (card.is_ok() && starts_above_zero) card.demand(list.f1 > 0, 1, "F1", "a number above 0");
-  if (card.is_ok()) card.demand(list.f1 >= 0, 1, "F1", "zero or above");
-  if (card.is_ok()) card.demand(list.f2 >= list.f1 && list.f2 > 0, 2, "F2", "a number above 0, not below F1");
-  return list;
-}
-void parse_freq2(Card& card, DynamicCards& r) {
-  auto list = read_range(card, 2, true);
-  list.count = card.read_int(3, "NF", 1);
-  if (card.is_ok()) card.demand(list.count > 0 && list.count <= 1'000'000, 3, "NF", "1 to 1000000");
-  add_list(card, r, std::move(list));
-}
-void parse_freq3(Card& card, DynamicCards& r) {
-  const bool is_log = card.read_word(3, "TYPE", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
-  auto list = read_range(card, 3, is_log);
-  list.is_log = is_log;
-  list.count = card.read_int(4, "NEF", 10);
-  list.spread = card.read_real(5, "CLUSTER", 1.0);
-  if (card.is_ok()) card.demand(list.count > 1 && list.count <= 100'000, 4, "NEF", "2 to 100000");
-  if (card.is_ok()) card.demand(list.spread > 0, 5, "CLUSTER", "a number above 0");
-  add_list(card, r, std::move(list));
-}
-void parse_freq4(Card& card, DynamicCards& r) {
-  auto list = read_range(card, 4, false);
-  list.spread = card.read_real(3, "FSPD", 0.1);
-  list.count = card.read_int(4, "NFM", 3);
-  if (card.is_ok()) card.demand(list.spread > 0 && list.spread < 1, 3, "FSPD", "a number between 0 and 1");
-  if (card.is_ok()) card.demand(list.count > 0 && list.count <= 100'000, 4, "NFM", "1 to 100000");
-  add_list(card, r, std::move(list));
-}
-/// SID F1 F2 FR1 FR2 ...
-void parse_freq5(Card& card, DynamicCards& r) {
-  auto list = read_list_head(card, 5);
-  list.f1 = card.read_real(1, "F1", 0.0);
-  list.f2 = card.read_real(2, "F2", 1e20);
-  for (int i = 3; i < card.get_size(); ++i) {
-    if (card.is_blank(i)) continue;
-    list.values.push_back(card.read_real(i, "FR"));
-    if (card.is_ok()) card.demand(list.values.back() > 0, i, "FR", "a number above 0");
-  }
-  if (card.is_ok() && list.values.empty()) card.fail("deck.missing-field", 3, "no fraction is given");
-  if (card.is_ok()) card.demand(list.f2 >= list.f1, 2, "F2", "a number not below F1");
-  add_list(card, r, std::move(list));
-}
-
-/// SID N1 DT1 NO1; from the second line on in the same fields.
-void parse_tstep(Card& card, DynamicCards& r) {
-  records::TimeSteps steps;
-  steps.sid = card.read_id(0, "SID");
-  steps.at = card.get_location();
-  for (int i = 1; i < std::max(card.get_size(), 4); i += 8) {
-    if (i > 1 && card.is_blank(i, i + 3)) continue;
-    records::TimeSteps::Part part;
-    part.count = card.read_id(i, "N");
-    part.step = card.read_real(i + 1, "DT");
-    part.every = card.read_id(i + 2, "NO", 1);
-    if (card.is_ok()) card.demand(part.step > 0, i + 1, "DT", "a number above 0");
-    if (card.is_ok()) card.demand(part.count <= 10'000'000, i, "N", "1 to 10000000");
-    steps.parts.push_back(part);
-  }
-  add_unique(card, r.steps, std::move(steps), &std::remove_reference_t<decltype(steps)>::sid);
-}
-
-/// SID NDT DT NO: the time steps, as those of TSTEP; the other fields control the iterations. The sign of sid tells
-/// TSTEPNL from TSTEP, whose ids are separate.
-void parse_tstepnl(Card& card, DynamicCards& r) {
-  records::TimeSteps steps;
-  steps.sid = -card.read_id(0, "SID");
-  steps.at = card.get_location();
-  records::TimeSteps::Part part;
-  part.count = card.read_id(1, "NDT");
-  part.step = card.read_real(2, "DT");
-  part.every = card.read_int(3, "NO", 1);
-  if (card.is_ok()) card.demand(part.step > 0, 2, "DT", "a number above 0");
-  if (card.is_ok()) card.demand(part.count <= 10'000'000, 1, "NDT", "1 to 10000000");
-  if (part.every <= 0) part.every = part.count;  // output at the last step
-  card.use(4, card.get_size());
-  steps.parts.push_back(part);
-  add_unique(card, r.steps, std::move(steps), &std::remove_reference_t<decltype(steps)>::sid);
-}
-
-/// SID J K X Y TID.
-void parse_randps(Card& card, DynamicCards& r) {
-  records::SpectralTerm t;
-  card.read_ids(0, {{"SID", t.sid}, {"J", t.j}, {"K", t.k}});
-  card.read_reals(3, {{"X", t.x, 0.0}, {"Y", t.y, 0.0}});
-  t.table = card.read_reference(5, "TID");
-  t.at = card.get_location();
-  if (card.is_ok())
-    card.demand(t.k >= t.j, 2, "K", "J or a subcase above it: the other half of the matrix is its conjugate");
-  if (card.is_ok() && t.j == t.k) {
-    card.demand(t.x >= 0, 3, "X", "zero or above: an auto-spectral density is not negative");
-    card.demand(t.y == 0, 4, "Y", "zero: an auto-spectral density is real");
-  }
-  if (card.is_ok()) r.spectral_terms.push_back(t);
-}
-
-/// SID N T0 TMAX.
-void parse_randt1(Card& card, DynamicCards& r) {
-  records::TimeLags lags;
-  card.read_ids(0, {{"SID", lags.sid}, {"N", lags.count}});
-  card.read_reals(2, {{"T0", lags.first, 0.0}, {"TMAX", lags.last}});
-  lags.at = card.get_location();
-  if (card.is_ok()) card.demand(lags.count <= 100'000, 1, "N", "1 to 100000");
-  if (card.is_ok()) card.demand(lags.first >= 0, 2, "T0", "zero or above");
-  if (card.is_ok()) card.demand(lags.last > lags.first, 3, "TMAX", "a number above T0");
-  add_unique(card, r.lags, std::move(lags), &std::remove_reference_t<decltype(lags)>::sid);
-}
-
-/// SID RTYPE1 ID1 COMP1 RTYPE2 ID2 COMP2 CURID. A blank field of one output is that of the other.
-void parse_rcross(Card& card, DynamicCards& r) {
-  static const std::vector<std::string> types{"DISP", "VELO",   "ACCE",   "OLOAD", "SPCF",
-                                              "MPCF", "STRESS", "STRAIN", "FORCE", "VAR"};
-  records::CrossRequest request;
-  request.sid = card.read_id(0, "SID");
-  request.a = {card.read_word(1, "RTYPE1", "", types), card.read_reference(2, "ID1"), card.read_reference(3, "COMP1")};
-  request.b = {card.read_word(4, "RTYPE2", "", types), card.read_reference(5, "ID2"), card.read_reference(6, "COMP2")};
-  request.curve = card.read_reference(7, "CURID");
-  request.at = card.get_location();
-  const auto share = [](auto& a, auto& b, const auto& none) {
-    if (a == none) a = b;
-    if (b == none) b = a;
-    return a != none;
+void write_dof_values(const DynamicCards& cards, CardSink& sink) {
+  const auto write = [&](const char* name, const auto& values) {
+    for (const auto& v : values) sink.put(CardFields(name).add(v.sid).add(v.g).add(v.c).add(v.value));
   };
-  const bool has_type = share(request.a.quantity, request.b.quantity, std::string());
-  const bool has_id = share(request.a.id, request.b.id, 0);
-  const bool has_component = share(request.a.component, request.b.component, 0);
-  if (card.is_ok()) card.demand(has_type, 1, "RTYPE1", "a type of output here or in field 6");
-  if (card.is_ok()) card.demand(has_id, 2, "ID1", "a grid here or in field 7");
-  if (card.is_ok()) card.demand(has_component, 3, "COMP1", "a component here or in field 8");
-  if (card.is_ok()) r.crosses.push_back(std::move(request));
+  write("DAREA", cards.areas);
+  write("DELAY", cards.delays);
+  write("DPHASE", cards.phases);
 }
-
-/// TID XAXIS YAXIS FLAT, pairs from the second line on.
-void parse_tabrnd1(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 1);
-  read_axes(card, t, "FLAT");
-  add_unique(card, r.spectra, std::move(t), &std::remove_reference_t<decltype(t)>::id);
+void write_lseqs(const DynamicCards& cards, CardSink& sink) {
+  for (const auto& s : cards.lseq) sink.put(make_fields("LSEQ", list_lseq, s));
 }
-
-/// TID TYPE LU WG.
-void parse_tabrndg(Card& card, DynamicCards& r) {
-  records::GustSpectrum t;
-  t.id = card.read_id(0, "TID");
-  const int type = card.read_int(1, "TYPE", 1);
-  t.is_dryden = type == 2;
-  t.length_over_speed = card.read_real(2, "L/U");
-  t.rms = card.read_real(3, "WG");
-  t.at = card.get_location();
-  if (card.is_ok()) card.demand(type == 1 || type == 2, 1, "TYPE", "1 (von Karman) or 2 (Dryden)");
-  if (card.is_ok()) card.demand(t.length_over_speed > 0, 2, "L/U", "a number above 0");
-  add_unique(card, r.gust_spectra, std::move(t), &std::remove_reference_t<decltype(t)>::id);
+void write_tics(const DynamicCards& cards, CardSink& sink) {
+  for (const auto& m : cards.initial) sink.put(make_fields("TIC", list_tic, m));
 }
-
-/// Digits of the components, none for a scalar point; ascending.
-std::string read_digits(Card& card, int i) {
-  const unsigned bits = card.read_components(i, "C", 0);
-  std::string digits;
-  for (int c = 1; c <= 6; ++c)
-    if (bits & 1U << static_cast<unsigned>(c - 1)) digits += static_cast<char>('0' + c);
-  return digits;
-}
-
-/// Pairs ID C from field `first` of the line on.
-void read_residual_pairs(Card& card, int first, DynamicCards& r) {
-  std::vector<records::ResidualDofs> read;
-  for (int i = first; i + 1 < std::max(card.get_size() + 1, 8); i += 2) {
-    if (card.is_blank(i, i + 2)) continue;
-    const int g = card.read_id(i, "ID");
-    read.push_back({g, g, read_digits(card, i + 1), card.get_location()});
-  }
-  if (read.empty() && card.is_ok()) card.fail("deck.missing-field", first, "ID is blank, expected a grid at least");
-  if (card.is_ok()) r.residual_dofs.insert(r.residual_dofs.end(), read.begin(), read.end());
-}
-/// C ID1 ID2 ... or C ID1 THRU ID2, with BY and EXCEPT; an id alone between exceptions must exist.
-void read_residual_list(Card& card, int first, DynamicCards& r) {
-  const auto digits = read_digits(card, first);
-  const auto list = read_id_list(card, first + 1, card.get_size(), "ID");
-  if (!card.is_ok()) return;
-  if (list.empty()) card.fail("deck.missing-field", first + 1, "ID is blank, expected a grid at least");
-  for (const auto& range : list) {
-    // Each piece between the exceptions is a range.
-    auto except = range.except;
-    if (range.step > 1)
-      for (long id = range.first; id <= range.last; ++id)
-        if ((id - range.first) % range.step != 0) except.push_back(static_cast<int>(id));
-    std::sort(except.begin(), except.end());
-    int from = range.first;
-    const auto add = [&](int to) {
-      if (from <= to) r.residual_dofs.push_back({from, to, digits, card.get_location()});
-    };
-    for (const int id : except) {
-      add(id - 1);
-      from = std::max(from, id + 1);
-    }
-    add(range.last);
-  }
-}
-
-/// U6 of USET and USET1 asks for residual vectors; other sets belong to DMAP of the user.
-bool is_residual_set(Card& card) {
-  const auto set = card.get_upper(0);
-  if (set == "U6") return true;
-  card.use(0, card.get_size());
-  card.warn("deck.user-set", 0, "the set " + set + " is not used", "U6 alone counts: residual vectors of its dofs");
-  return false;
-}
-void parse_uset(Card& card, DynamicCards& r) {
-  if (is_residual_set(card)) read_residual_pairs(card, 1, r);
-}
-void parse_uset1(Card& card, DynamicCards& r) {
-  if (is_residual_set(card)) read_residual_list(card, 1, r);
-}
-void parse_rvdof(Card& card, DynamicCards& r) { read_residual_pairs(card, 0, r); }
-void parse_rvdof1(Card& card, DynamicCards& r) { read_residual_list(card, 0, r); }
 
 // Conversion of units. Tables are pure numbers over hertz or time: the units of a load are those of its DAREA, static
 // loads or SPCD.
@@ -571,94 +230,47 @@ void convert_tic(UnitConverter& u) {
   u.scale_by(motion, 3, "L", ".", "?");
   u.scale_by(motion, 4, "V", "Hz", "?");
 }
-void convert_freq(UnitConverter& u) { u.scale(1, u.size() - 1, "Hz"); }
-void convert_tstep(UnitConverter& u) {
-  for (int line = 0; line < u.size(); line += 8) u.scale(line + 2, "T");
-}
-/// Per hertz, as G of a table.
-void convert_randps(UnitConverter& u) {
-  if (u.get_int(5) == 0) u.scale(3, 4, "T");
-}
-void convert_tabrnd1(UnitConverter& u) {
-  for (int i = 8; i < u.size(); i += 2) {
-    u.scale(i, "Hz");
-    u.scale(i + 1, "T");
-  }
-}
-void convert_tabdmp1(UnitConverter& u) {
-  for (int i = 8; i < u.size(); i += 2) u.scale(i, "Hz");
-}
-
-/// Dimension of the argument of a table by the loads that name it.
-std::string find_table_axis(const UnitConverter& u) {
-  const auto& axes = u.get_notes().table_axes;
-  const auto found = axes.find(u.get(0));
-  if (found != axes.end() && found->second.size() == 1) return *found->second.begin();
-  return u.keeps_time() ? "." : "?";
-}
-void convert_tabled1(UnitConverter& u) {
-  const auto axis = find_table_axis(u);
-  for (int i = 8; i < u.size(); i += 2) u.scale(i, axis);
-}
-void convert_tabled2(UnitConverter& u) {
-  u.scale(1, find_table_axis(u));
-  convert_tabled1(u);
-}
-/// Scales X1 and X2; the table is one of (x - X1) / X2.
-void convert_tabled3(UnitConverter& u) { u.scale(1, 2, find_table_axis(u)); }
-void convert_tabled4(UnitConverter& u) { u.scale(1, 4, find_table_axis(u)); }
 
 }  // namespace
 
-const DynamicParserTable& get_dynamic_parsers() {
-  static const DynamicParserTable table{{"RLOAD1", {parse_rload1, nullptr, convert_load, note_rload}},
-                                        {"RLOAD2", {parse_rload2, nullptr, convert_load, note_rload}},
-                                        {"TLOAD1", {parse_tload1, nullptr, convert_tload1, note_tload1}},
-                                        {"TLOAD2", {parse_tload2, nullptr, convert_tload2, note_tload}},
-                                        {"DLOAD", {parse_dload, ""}},
-                                        {"DAREA", {parse_darea, nullptr, convert_darea}},
-                                        {"DELAY", {parse_delay, ". . . T . . T"}},
-                                        {"DPHASE", {parse_dphase, ""}},
-                                        {"LSEQ", {parse_lseq, ""}},
-                                        {"TIC", {parse_tic, nullptr, convert_tic}},
-                                        {"TABLED1", {parse_tabled1, nullptr, convert_tabled1}},
-                                        {"TABLED2", {parse_tabled2, nullptr, convert_tabled2}},
-                                        {"TABLED3", {parse_tabled3, nullptr, convert_tabled3}},
-                                        {"TABLED4", {parse_tabled4, nullptr, convert_tabled4}},
-                                        {"TABDMP1", {parse_tabdmp1, nullptr, convert_tabdmp1}},
-                                        {"FREQ", {parse_freq, nullptr, convert_freq}},
-                                        {"FREQ1", {parse_freq1, ". Hz Hz ."}},
-                                        {"FREQ2", {parse_freq2, ". Hz Hz ."}},
-                                        {"FREQ3", {parse_freq3, ". Hz Hz . . ."}},
-                                        {"FREQ4", {parse_freq4, ". Hz Hz . ."}},
-                                        {"FREQ5", {parse_freq5, ". Hz Hz"}},
-                                        {"TSTEP", {parse_tstep, nullptr, convert_tstep}},
-                                        {"TSTEPNL", {parse_tstepnl, ". . T"}},
-                                        {"USET", {parse_uset, ""}},
-                                        {"USET1", {parse_uset1, ""}},
-                                        {"RVDOF", {parse_rvdof, ""}},
-                                        {"RVDOF1", {parse_rvdof1, ""}},
-                                        {"RANDPS", {parse_randps, nullptr, convert_randps}},
-                                        {"RANDT1", {parse_randt1, ". . T T"}},
-                                        {"RCROSS", {parse_rcross, ""}},
-                                        {"TABRND1", {parse_tabrnd1, nullptr, convert_tabrnd1}},
-                                        {"TABRNDG", {parse_tabrndg, ". . T ?"}}};
-  return table;
+void add_dynamic_loads(DynamicParserTable& table) {
+  table["RLOAD1"] = {parse_rload1, nullptr, convert_load, note_rload};
+  table["RLOAD1"].names = name_fields(list_rload1);
+  table["RLOAD2"] = {parse_rload2, nullptr, convert_load, note_rload};
+  table["RLOAD2"].names = name_fields(list_rload2);
+  table["TLOAD1"] = {parse_tload1, nullptr, convert_tload1, note_tload1};
+  table["TLOAD1"].names = name_fields(list_tload1);
+  table["TLOAD2"] = {parse_tload2, nullptr, convert_tload2, note_tload};
+  table["TLOAD2"].names = name_fields(list_tload2);
+  table["DLOAD"] = {parse_dload, ""};
+  table["DLOAD"].names = name_fields(list_dload);
+  table["DAREA"] = {parse_darea, nullptr, convert_darea};
+  table["DAREA"].names = "SID P1 C1 A1 P2 C2 A2";
+  table["DELAY"] = {parse_delay, ". . . T . . T"};
+  table["DELAY"].names = "SID P1 C1 T1 P2 C2 T2";
+  table["DPHASE"] = {parse_dphase, ""};
+  table["DPHASE"].names = "SID P1 C1 TH1 P2 C2 TH2";
+  table["LSEQ"] = {parse_lseq, ""};
+  table["LSEQ"].names = name_fields(list_lseq);
+  table["TIC"] = {parse_tic, nullptr, convert_tic};
+  table["TIC"].names = name_fields(list_tic);
+  set_writer(table, write_dynamic_loads, {"RLOAD1", "RLOAD2", "TLOAD1", "TLOAD2"});
+  set_writer(table, write_dloads, {"DLOAD"});
+  set_writer(table, write_dof_values, {"DAREA", "DELAY", "DPHASE"});
+  set_writer(table, write_lseqs, {"LSEQ"});
+  set_writer(table, write_tics, {"TIC"});
 }
 
-int records::DynamicSelection::*find_selection_of(std::string_view card) {
-  using records::DynamicSelection;
-  if (card.substr(0, 4) == "FREQ") return &DynamicSelection::frequency;
-  if (card == "TSTEP" || card == "TSTEPNL") return &DynamicSelection::tstep;
-  if (card == "TIC") return &DynamicSelection::ic;
-  if (card == "RANDPS" || card == "RANDT1") return &DynamicSelection::random;
-  if (card == "RCROSS") return &DynamicSelection::rcross;
-  if (card == "TABDMP1") return &DynamicSelection::sdamping;
-  if (card == "EIGC") return &DynamicSelection::cmethod;
-  if (card == "TF") return &DynamicSelection::tfl;
-  if (card == "RGYRO") return &DynamicSelection::rgyro;
-  if (card == "ROTORD") return &DynamicSelection::rmethod;
-  return nullptr;
+const DynamicParserTable& get_dynamic_parsers() {
+  static const DynamicParserTable table = [] {
+    DynamicParserTable t;
+    add_dynamic_loads(t);
+    add_dynamic_tables(t);
+    add_dynamic_lists(t);
+    add_frequency_table_parsers(t);
+    return t;
+  }();
+  return table;
 }
 
 }  // namespace bough::nastran::detail

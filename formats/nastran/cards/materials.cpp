@@ -32,10 +32,13 @@ void parse_mat1(Card& card, Reading& r) {
   if (E && !G && nu) {
     card.demand(*nu > -1, 3, "NU", "a value above -1");
     mat.G = *nu > -1 ? *E / (2 * (1 + *nu)) : 0.0;
+    mat.filled = 'G';
   } else if (!E && G && nu) {
     mat.E = 2 * (1 + *nu) * *G;
+    mat.filled = 'E';
   } else if (E && G && !nu) {
     mat.nu = *G > 0 ? *E / (2 * *G) - 1 : 0.0;
+    mat.filled = 'N';
   }
   if (E && G && nu && *G > 0 && std::abs(1 - *E / (2 * (1 + *nu) * *G)) > 0.01)
     card.warn("deck.inconsistent-material", 1, "E, G and NU differ from E = 2(1+NU)G by more than 1 %",

@@ -1,17 +1,10 @@
 #include "formats/nastran/detail/parsers.hpp"
-
-#include <algorithm>
+#include "formats/nastran/detail/write_order.hpp"
 
 namespace bough::nastran::detail {
 
 void write_by(ParserTable& table, CardWriter write, std::initializer_list<const char*> cards) {
-  int order = 1;
-  for (const auto& [name, row] : table) order = std::max(order, row.write_order + 1);
-  for (const char* card : cards) {
-    auto& row = table.at(card);
-    row.write = write;
-    row.write_order = order;
-  }
+  set_writer(table, write, cards);
 }
 
 void write_by(ParserTable& table, std::initializer_list<std::pair<const char*, CardWriter>> cards) {
@@ -55,6 +48,8 @@ const ParserTable& get_card_parsers() {
     add_special_constraint_parsers(t);
     add_acceleration_parsers(t);
     add_superelement_parsers(t);
+    add_material_table_parsers(t);
+    add_connector_parsers(t);
     return t;
   }();
   return table;

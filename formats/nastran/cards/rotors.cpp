@@ -4,9 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "formats/nastran/detail/card_sink.hpp"
 #include "formats/nastran/detail/dynamic_cards.hpp"
+#include "formats/nastran/detail/field_list.hpp"
 #include "formats/nastran/detail/text.hpp"
 #include "formats/nastran/detail/unit_converter.hpp"
+#include "formats/nastran/detail/write_order.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -14,9 +17,14 @@ namespace {
 using records::DynamicCards;
 using std::numbers::pi;
 
-/// Radians per unit of time of one unit: revolutions per minute, or per unit of time.
-double read_speed_unit(Card& card, int i) {
-  return card.read_word(i, "SPDUNIT", "", {"RPM", "FREQ"}) == "RPM" ? pi / 30 : 2 * pi;
+/// SPDUNIT: radians per unit of time of one unit: revolutions per minute, or per unit of time.
+FieldList& list_speed_unit(FieldList& f, double& unit) {
+  return f.field(
+      "SPDUNIT",
+      [&](Card& card, int i) {
+        unit = card.read_word(i, "SPDUNIT", "", {"RPM", "FREQ"}) == "RPM" ? pi / 30 : 2 * pi;
+      },
+      [&](CardFields& out) { out.add_word(unit < 1 ? "RPM" : "FREQ"); });
 }
 
 /// ROTORID GRID1 GRID2 ... or GRID1 THRU GRID2 BY INC.
@@ -37,27 +45,25 @@ void parse_rotorg(Card& card, DynamicCards& r) {
   if (card.is_ok()) r.rotors.lines.push_back(std::move(line));  // several cards may list the grids of a rotor
 }
 
-/// ROTORID GRIDA GRIDB SPDUNIT SPTID, GR ALPHAR1 ALPHAR2 WR3R WR4R WRHR HYBRID.
+void list_rspinr(FieldList& f, records::RotorSpin& spin) {
+  f.id("ROTORID", spin.rotor).id("GRIDA", spin.grid_a).id("GRIDB", spin.grid_b);
+  list_speed_unit(f, spin.unit).set_or_real("SPTID", spin.table, spin.rate, 1.0).blank(3);
+  f.real("GR", spin.gr, 0.0).real("ALPHAR1", spin.alpha1, 0.0).real("ALPHAR2", spin.alpha2, 0.0);
+  f.field(
+      "WR3R",
+      [&](Card& card, int i) {
+        // Older releases have HYBRID, an integer, in place of WR3R.
+        for (const int k : {i, i + 2, i + 3})
+          if (!card.is_blank(k) && (k != i || card.is_integer(k)))
+            card.demand(false, k, k == i + 2 ? "WRHR" : "HYBRID", "a blank field: hybrid damping is not supported");
+        if (card.is_ok()) spin.wr3 = card.read_real(i, "WR3R", 0.0);
+      },
+      [&](CardFields& out) { out.add(spin.wr3); });
+  f.real("WR4R", spin.wr4, 0.0);
+}
 void parse_rspinr(Card& card, DynamicCards& r) {
   records::RotorSpin spin;
-  spin.rotor = card.read_id(0, "ROTORID");
-  spin.grid_a = card.read_id(1, "GRIDA");
-  spin.grid_b = card.read_id(2, "GRIDB");
-  spin.unit = read_speed_unit(card, 3);
-  if (card.is_integer(4))
-    spin.table = card.read_reference(4, "SPTID");
-  else
-    spin.rate = card.read_real(4, "SPTID", 1.0);
-  spin.gr = card.read_real(8, "GR", 0.0);
-  spin.alpha1 = card.read_real(9, "ALPHAR1", 0.0);
-  spin.alpha2 = card.read_real(10, "ALPHAR2", 0.0);
-  // Older releases have HYBRID, an integer, in place of WR3R.
-  for (const int i : {11, 13, 14})
-    if (!card.is_blank(i) && (i != 11 || card.is_integer(i)))
-      card.demand(false, i, i == 13 ? "WRHR" : "HYBRID", "a blank field: hybrid damping is not supported");
-  if (card.is_ok()) spin.wr3 = card.read_real(11, "WR3R", 0.0);
-  spin.wr4 = card.read_real(12, "WR4R", 0.0);
-  spin.at = card.get_location();
+  read_fields(card, list_rspinr, spin);
   if (card.is_ok())
     card.demand(spin.grid_a != spin.grid_b, 2, "GRIDB", "another grid than GRIDA: the line is the axis");
   if (card.is_ok()) card.demand(spin.wr3 >= 0, 11, "WR3R", "zero or above");
@@ -65,34 +71,34 @@ void parse_rspinr(Card& card, DynamicCards& r) {
   add_unique(card, r.rotors.spins, std::move(spin), &records::RotorSpin::rotor);
 }
 
-/// RID SYNCFLG REFROTR SPDUNIT SPDLOW SPDHIGH SPEED.
+void list_rgyro(FieldList& f, records::RotorAnalysis& a) {
+  f.id("RID", a.sid);
+  f.field(
+      "SYNCFLG",
+      [&](Card& card, int i) {
+        a.is_synchronous = card.read_word(i, "SYNCFLG", "", {"SYNC", "ASYNC"}) == "SYNC";
+      },
+      [&](CardFields& out) { out.add_word(a.is_synchronous ? "SYNC" : "ASYNC"); });
+  list_speed_unit(f.id("REFROTR", a.reference), a.unit).real("SPDLOW", a.low, 0.0).real("SPDHIGH", a.high, 99999.0);
+  f.set_or_real("SPEED", a.speeds, a.speed);
+}
 void parse_rgyro(Card& card, DynamicCards& r) {
   records::RotorAnalysis a;
-  a.sid = card.read_id(0, "RID");
-  a.is_synchronous = card.read_word(1, "SYNCFLG", "", {"SYNC", "ASYNC"}) == "SYNC";
-  a.reference = card.read_id(2, "REFROTR");
-  a.unit = read_speed_unit(card, 3);
-  a.low = card.read_real(4, "SPDLOW", 0.0);
-  a.high = card.read_real(5, "SPDHIGH", 99999.0);
-  if (card.is_integer(6) && !card.is_blank(6))
-    a.speeds = card.read_reference(6, "SPEED");
-  else
-    a.speed = card.read_real(6, "SPEED", 0.0);
-  card.use(7, 16);  // superelement of the rotor, damping of others: of transients
-  a.at = card.get_location();
+  read_fields(card, list_rgyro, a);
+  card.use_unkept(7, 16);  // superelement of the rotor, damping of others: of transients
   if (card.is_ok()) card.demand(a.low >= 0, 4, "SPDLOW", "zero or above");
   if (card.is_ok()) card.demand(a.high > a.low, 5, "SPDHIGH", "a speed above SPDLOW");
   add_unique(card, r.rotors.analyses, std::move(a), &records::RotorAnalysis::sid);
 }
 
-/// SID S1 DS NDS, MDTRAK CORU CORL PRTCOR: modes are followed by their vectors whatever is in the second line.
+void list_rspeed(FieldList& f, records::SpeedList& list) {
+  f.id("SID", list.sid).real("S1", list.first).real("DS", list.step).id("NDS", list.count, 1);
+}
+/// The second line has MDTRAK CORU CORL PRTCOR: modes are followed by their vectors whatever is in it.
 void parse_rspeed(Card& card, DynamicCards& r) {
   records::SpeedList list;
-  list.sid = card.read_id(0, "SID");
-  card.read_reals(1, {{"S1", list.first, {}}, {"DS", list.step, {}}});
-  list.count = card.read_id(3, "NDS", 1);
-  card.use(8, 16);
-  list.at = card.get_location();
+  read_fields(card, list_rspeed, list);
+  card.use_unkept(8, 16);
   if (card.is_ok()) card.demand(list.first >= 0, 1, "S1", "zero or above");
   if (card.is_ok()) card.demand(list.step > 0, 2, "DS", "a step above 0");
   if (card.is_ok()) card.demand(list.count <= 100'000, 3, "NDS", "1 to 100000");
@@ -125,22 +131,34 @@ void parse_ddval(Card& card, DynamicCards& r) {
   add_unique(card, r.rotors.values, std::move(list), &records::ValueList::id);
 }
 
-/// SID RSTART RSTEP NUMSTEP REFSYS CMOUT RUNIT FUNIT, ZSTEIN ORBEPS ROTPRT SYNC ETYPE EORDER, then a line a rotor: RID
-/// RSET RSPEED RCORD W3 W4 RFORCE.
+using records::RotorSweepCard;
+
+/// A line for each rotor follows. Speeds are written in radians per unit of time, as they are kept.
+void list_rotord(FieldList& f, RotorSweepCard& s, bool& is_fixed, double& unit) {
+  f.id("SID", s.sid).real("RSTART", s.first).real("RSTEP", s.step).id("NUMSTEP", s.count);
+  f.flag("REFSYS", is_fixed, "ROT", "FIX").real("CMOUT", s.shapes_at, 0.0);
+  f.field(
+      "RUNIT",
+      [&](Card& card, int i) {
+        const auto word = card.read_word(i, "RUNIT", "RPM", {"RPM", "CPS", "HZ", "RAD"});
+        unit = word == "RPM" ? pi / 30 : word == "RAD" ? 1 : 2 * pi;
+      },
+      [](CardFields& out) { out.add_word("RAD"); });
+}
+
+/// The fields of list_rotord and further ones, then a line a rotor: RID RSET RSPEED RCORD W3 W4 RFORCE.
 void parse_rotord(Card& card, DynamicCards& r) {
-  records::RotorSweepCard s;
-  s.sid = card.read_id(0, "SID");
-  card.read_reals(1, {{"RSTART", s.first, {}}, {"RSTEP", s.step, {}}});
-  s.count = card.read_id(3, "NUMSTEP");
-  const bool is_rotating = card.read_word(4, "REFSYS", "ROT", {"FIX", "ROT"}) == "ROT";
-  s.shapes_at = card.read_real(5, "CMOUT", 0.0);
-  const auto unit = card.read_word(6, "RUNIT", "RPM", {"RPM", "CPS", "HZ", "RAD"});
-  const double factor = unit == "RPM" ? pi / 30 : unit == "RAD" ? 1 : 2 * pi;
-  card.use(7, 16);  // units and amount of what is printed; options of responses
+  RotorSweepCard s;
+  bool is_fixed = false;
+  double factor = 1;
+  FieldList fields(card);
+  list_rotord(fields, s, is_fixed, factor);
+  const bool is_rotating = !is_fixed;
+  card.use_unkept(7, 16);  // units and amount of what is printed; options of responses
   s.at = card.get_location();
   for (int i = 16; i < card.get_size(); i += 8) {
     if (card.is_blank(i, i + 8)) continue;
-    records::RotorSweepCard::Rotor rotor;
+    RotorSweepCard::Rotor rotor;
     rotor.id = card.read_id(i, "RID", 1 + static_cast<int>(s.rotors.size()));
     rotor.line = card.read_id(i + 1, "RSET");
     rotor.speed = card.read_real(i + 2, "RSPEED", 1.0);
@@ -163,35 +181,67 @@ void parse_rotord(Card& card, DynamicCards& r) {
   s.first *= factor;
   s.step *= factor;
   if (s.shapes_at > 0) s.shapes_at *= factor;
-  add_unique(card, r.rotors.sweeps, std::move(s), &records::RotorSweepCard::sid);
+  add_unique(card, r.rotors.sweeps, std::move(s), &RotorSweepCard::sid);
 }
 
-void read_number_or_table(Card& card, int i, const char* what, double fallback, double& value, int& table) {
-  if (card.is_integer(i) && !card.is_blank(i))
-    table = card.read_reference(i, what);
-  else
-    value = card.read_real(i, what, fallback);
+void list_unbalnc(FieldList& f, records::Unbalance& u) {
+  f.id("SID", u.sid).set_or_real("MASS", u.mass_table, u.mass).id("GRID", u.grid);
+  f.real("X1", u.x[0], 0.0).real("X2", u.x[1], 0.0).real("X3", u.x[2], 0.0).blank(2);
+  f.set_or_real("ROFFSET", u.radius_table, u.radius, 1.0).real("THETA", u.angle_deg, 0.0);
+  f.set_or_real("ZOFFSET", u.offset_table, u.offset).real("FON", u.from_hz, 0.0).real("FOFF", u.to_hz, 1e30);
 }
-
-/// SID MASS GRID X1 X2 X3, ROFFSET THETA ZOFFSET FON FOFF.
 void parse_unbalnc(Card& card, DynamicCards& r) {
   records::Unbalance u;
-  u.sid = card.read_id(0, "SID");
   card.demand(!card.is_blank(1), 1, "MASS", "a mass or a table");
-  read_number_or_table(card, 1, "MASS", 0, u.mass, u.mass_table);
-  u.grid = card.read_id(2, "GRID");
-  const auto x = card.read_vector(3, "X1 X2 X3");
-  std::copy(x.begin(), x.end(), u.x);
-  read_number_or_table(card, 8, "ROFFSET", 1, u.radius, u.radius_table);
-  u.angle_deg = card.read_real(9, "THETA", 0.0);
-  read_number_or_table(card, 10, "ZOFFSET", 0, u.offset, u.offset_table);
-  u.from_hz = card.read_real(11, "FON", 0.0);
-  u.to_hz = card.read_real(12, "FOFF", 1e30);
-  card.use(13, 24);  // corrections of transients
-  u.at = card.get_location();
-  if (card.is_ok()) card.demand(!x.isZero(0), 3, "X1 X2 X3", "a vector that is not zero");
+  read_fields(card, list_unbalnc, u);
+  card.use_unkept(13, 24);  // corrections of transients
+  if (card.is_ok()) card.demand(u.x[0] != 0 || u.x[1] != 0 || u.x[2] != 0, 3, "X1 X2 X3", "a vector that is not zero");
   if (card.is_ok()) card.demand(u.to_hz > u.from_hz, 12, "FOFF", "a frequency above FON");
   if (card.is_ok()) r.rotors.unbalances.push_back(u);
+}
+
+void write_rotor_lines(const DynamicCards& cards, CardSink& sink) {
+  for (const auto& line : cards.rotors.lines) {
+    CardFields card("ROTORG");
+    card.add(line.id);
+    for (const auto& range : line.grids) {
+      card.add(range.first);
+      if (!range.is_thru) continue;
+      card.add_word("THRU").add(range.last);
+      if (range.step > 1) card.add_word("BY").add(range.step);
+    }
+    sink.put(card);
+  }
+}
+void write_rotor_speeds(const DynamicCards& cards, CardSink& sink) {
+  const auto& rotors = cards.rotors;
+  for (const auto& spin : rotors.spins) sink.put(make_fields("RSPINR", list_rspinr, spin));
+  for (const auto& analysis : rotors.analyses) sink.put(make_fields("RGYRO", list_rgyro, analysis));
+  for (const auto& list : rotors.speeds) sink.put(make_fields("RSPEED", list_rspeed, list));
+  for (const auto& list : rotors.values) {
+    CardFields card("DDVAL");
+    card.add(list.id);
+    for (const double value : list.values) card.add(value);
+    sink.put(card);
+  }
+}
+void write_rotor_sweeps(const DynamicCards& cards, CardSink& sink) {
+  for (auto sweep : cards.rotors.sweeps) {
+    CardFields card("ROTORD");
+    FieldList fields(card);
+    bool is_fixed = !sweep.rotors.front().is_rotating;
+    double unit = 1;
+    list_rotord(fields, sweep, is_fixed, unit);
+    card.end_line().add_blank(8);
+    for (const auto& rotor : sweep.rotors) {
+      card.end_line().add(rotor.id).add(rotor.line).add(rotor.speed).add_id(rotor.cid).add(rotor.w3).add(rotor.w4);
+      card.add_id(rotor.has_stress ? 1 : 0);  // the record does not keep the set
+    }
+    sink.put(card);
+  }
+}
+void write_unbalances(const DynamicCards& cards, CardSink& sink) {
+  for (const auto& u : cards.rotors.unbalances) sink.put(make_fields("UNBALNC", list_unbalnc, u));
 }
 
 /// Speeds per minute remain where the unit of time does; else none are known to be right.
@@ -233,13 +283,26 @@ void note_unbalnc(const UnitConverter& u, UnitNotes& notes) {
 }  // namespace
 
 const DynamicParserTable& get_rotor_parsers() {
-  static const DynamicParserTable table{{"ROTORG", {parse_rotorg, ""}},
-                                        {"RSPINR", {parse_rspinr, nullptr, convert_rspinr}},
-                                        {"RGYRO", {parse_rgyro, nullptr, convert_rgyro}},
-                                        {"RSPEED", {parse_rspeed, nullptr, convert_speeds}},
-                                        {"DDVAL", {parse_ddval, nullptr, convert_speeds}},
-                                        {"ROTORD", {parse_rotord, nullptr, convert_rotord}},
-                                        {"UNBALNC", {parse_unbalnc, nullptr, convert_unbalnc, note_unbalnc}}};
+  static const DynamicParserTable table = [] {
+    DynamicParserTable t;
+    t["ROTORG"] = {parse_rotorg, ""};
+    t["RSPINR"] = {parse_rspinr, nullptr, convert_rspinr};
+    t["RSPINR"].names = name_fields(list_rspinr);
+    t["RGYRO"] = {parse_rgyro, nullptr, convert_rgyro};
+    t["RGYRO"].names = name_fields(list_rgyro);
+    t["RSPEED"] = {parse_rspeed, nullptr, convert_speeds};
+    t["RSPEED"].names = name_fields(list_rspeed);
+    t["DDVAL"] = {parse_ddval, nullptr, convert_speeds};
+    t["ROTORD"] = {parse_rotord, nullptr, convert_rotord};
+    t["ROTORD"].names = "SID RSTART RSTEP NUMSTEP REFSYS CMOUT RUNIT";
+    t["UNBALNC"] = {parse_unbalnc, nullptr, convert_unbalnc, note_unbalnc};
+    t["UNBALNC"].names = name_fields(list_unbalnc);
+    set_writer(t, write_rotor_lines, {"ROTORG"});
+    set_writer(t, write_rotor_speeds, {"RSPINR", "RGYRO", "RSPEED", "DDVAL"});
+    set_writer(t, write_rotor_sweeps, {"ROTORD"});
+    set_writer(t, write_unbalances, {"UNBALNC"});
+    return t;
+  }();
   return table;
 }
 

@@ -146,15 +146,12 @@ void write_eigen_methods(const records::Deck& deck, CardSink& sink) {
 }
 
 void write_params(const records::Deck& deck, CardSink& sink) {
-  const auto put = [&](const records::Param& p) {
+  for (const auto& p : deck.params) {
     CardFields card("PARAM");
     card.add_word(p.name);
     if (!p.value.empty()) card.add_word(p.value);
     sink.put(card);
-  };
-  for (const auto& p : deck.params)
-    if (!deck.autospc_command || p.name != "AUTOSPC") put(p);
-  if (deck.autospc_command) put(*deck.autospc_command);
+  }
 }
 
 void convert_param(UnitConverter& u) {

@@ -1,36 +1,55 @@
 #include <array>
+#include <bit>
 
+#include "formats/nastran/detail/field_list.hpp"
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/recovery_table.hpp"
 
 namespace bough::nastran::detail {
 namespace {
 
 constexpr double kTolerance = 1e-5;  // Quick Reference Guide, SEBULK and SECONCT
 
-/// SEID TYPE RSEID METHOD TOL LOC UNITNO
+using records::Seconct;
+
+/// LOC: whether coincident points are checked for their place, which is done in any case.
+FieldList& list_location_check(FieldList& f) {
+  return f.field(
+      "LOC",
+      [](Card& card, int i) {
+        card.read_word(i, "LOC", "YES", {"YES", "NO"});
+      },
+      [](CardFields& out) { out.add_blank(); });
+}
+
+void list_sebulk(FieldList& f, records::Sebulk& s) {
+  f.id("SEID", s.id);
+  f.field(
+      "TYPE", [&](Card& card, int i) { s.type = card.get_upper(i); }, [&](CardFields& out) { out.add_word(s.type); });
+  f.reference("RSEID", s.reference);
+  f.field(
+      "METHOD",
+      [&](Card& card, int i) {
+        s.is_auto = card.read_word(i, "METHOD", "AUTO", {"AUTO", "MANUAL"}) == "AUTO";
+      },
+      [&](CardFields& out) { out.add_word(s.is_auto ? "AUTO" : "MANUAL"); });
+  list_location_check(f.real("TOL", s.tolerance, kTolerance)).reference("UNITNO", s.unit);
+}
 void parse_sebulk(Card& card, Reading& r) {
   records::Sebulk s;
-  s.id = card.read_id(0, "SEID");
-  s.type = card.get_upper(1);
-  s.reference = card.read_reference(2, "RSEID");
-  s.is_auto = card.read_word(3, "METHOD", "AUTO", {"AUTO", "MANUAL"}) == "AUTO";
-  s.tolerance = card.read_real(4, "TOL", kTolerance);
-  card.read_word(5, "LOC", "YES", {"YES", "NO"});
-  s.unit = card.read_reference(6, "UNITNO");
-  s.at = card.get_location();
+  read_fields(card, list_sebulk, s);
   if (s.type.empty()) card.fail("deck.missing-field", 1, "TYPE is blank, expected PRIMARY, EXTOP4, ...");
   if (card.is_ok()) r.deck.super.sebulk.push_back(s);
 }
 
-/// SEIDA SEIDB TOL LOC, then on further lines GIDA1 GIDB1 GIDA2 GIDB2 ... or GIDA1 THRU GIDA2 GIDB1 THRU GIDB2.
+void list_seconct(FieldList& f, Seconct& s) {
+  list_location_check(f.id("SEIDA", s.a).reference("SEIDB", s.b).real("TOL", s.tolerance, kTolerance));
+}
+/// The fields of list_seconct, then on further lines GIDA1 GIDB1 GIDA2 GIDB2 ... or GIDA1 THRU GIDA2 GIDB1 THRU GIDB2.
 void parse_seconct(Card& card, Reading& r) {
-  records::Seconct s;
-  s.a = card.read_id(0, "SEIDA");
-  s.b = card.read_reference(1, "SEIDB");
-  s.tolerance = card.read_real(2, "TOL", kTolerance);
-  card.read_word(3, "LOC", "YES", {"YES", "NO"});
+  Seconct s;
+  read_fields(card, list_seconct, s);
   card.use(4, 8);
-  s.at = card.get_location();
   card.use(8, card.get_size());
   for (int i = 8; i < card.get_size();) {
     if (card.is_blank(i)) {
@@ -59,7 +78,7 @@ void parse_seconct(Card& card, Reading& r) {
 
 /// SEIDA SEIDB GIDA1 GIDA2 ..., also over more lines, with THRU: SECONCT to the grids at the same places.
 void parse_sebndry(Card& card, Reading& r) {
-  records::Seconct s;
+  Seconct s;
   s.a = card.read_id(0, "SEIDA");
   if (!card.is_word(1, "ALL")) s.b = card.read_reference(1, "SEIDB");
   card.use(1);
@@ -94,13 +113,12 @@ void parse_extrn(Card& card, Reading& r) {
   }
 }
 
-/// LIDS0 SEID LIDSE
+void list_seload(FieldList& f, records::Seload& load) {
+  f.id("LIDS0", load.set).id("SEID", load.superelement).id("LIDSE", load.load);
+}
 void parse_seload(Card& card, Reading& r) {
   records::Seload load;
-  load.set = card.read_id(0, "LIDS0");
-  load.superelement = card.read_id(1, "SEID");
-  load.load = card.read_id(2, "LIDSE");
-  load.at = card.get_location();
+  read_fields(card, list_seload, load);
   if (card.is_ok()) r.deck.super.seload.push_back(load);
 }
 
@@ -139,6 +157,51 @@ void parse_dti(Card& card, Reading& r) {
   r.deck.super.rows.push_back(std::move(rows));
 }
 
+void write_sebulks(const records::Deck& deck, CardSink& sink) {
+  for (const auto& s : deck.super.sebulk) sink.put(make_fields("SEBULK", list_sebulk, s));
+}
+/// Points of SEBNDRY have no counterpart.
+bool is_boundary(const Seconct& s) { return !s.points.empty() && s.points.front().second == 0; }
+void write_seconcts(const records::Deck& deck, CardSink& sink) {
+  for (const auto& s : deck.super.seconct) {
+    if (is_boundary(s)) continue;
+    auto card = make_fields("SECONCT", list_seconct, s);
+    card.end_line();
+    for (const auto& [a, b] : s.points) card.add(a).add(b);
+    sink.put(card);
+  }
+}
+void write_sebndries(const records::Deck& deck, CardSink& sink) {
+  for (const auto& s : deck.super.seconct) {
+    if (!is_boundary(s)) continue;
+    CardFields card("SEBNDRY");
+    card.add(s.a).add(s.b);
+    for (const auto& point : s.points) card.add(point.first);
+    sink.put(card);
+  }
+}
+void write_seloads(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.super.seload) sink.put(make_fields("SELOAD", list_seload, load));
+}
+void write_extrn(const records::Deck& deck, CardSink& sink) {
+  if (deck.super.extrn.empty()) return;
+  CardFields card("EXTRN");
+  for (const auto& point : deck.super.extrn) {
+    card.add(point.id);
+    point.c == 0 ? card.add(0) : card.add_components(point.c);
+  }
+  sink.put(card);
+}
+/// Tables of rows, and the load of each column of PX.
+void write_recovery_tables(const records::Deck& deck, CardSink& sink) {
+  int num_columns = 0;
+  for (const auto& point : deck.super.extrn) num_columns += point.c == 0 ? 1 : std::popcount(point.c);
+  for (const auto& rows : deck.super.rows) write_recovery_rows(rows.name, rows.items, num_columns, sink);
+  int record = 0;
+  for (const auto& [load, column] : deck.super.load_columns)
+    sink.put(CardFields("DTI").add_word("SELOAD").add(++record).add(load).add(column));
+}
+
 void convert_sebulk(UnitConverter& u) {
   u.fail_card("SEBULK takes matrices from a file, which keeps its units",
               "convert the deck of the component and write its files again");
@@ -147,13 +210,19 @@ void convert_sebulk(UnitConverter& u) {
 }  // namespace
 
 void add_superelement_parsers(ParserTable& table) {
-  table["SEBULK"] = {parse_sebulk, nullptr, "SEID TYPE RSEID METHOD TOL LOC UNITNO"};
+  table["SEBULK"] = {parse_sebulk, nullptr, name_fields(list_sebulk)};
   table["SEBULK"].convert = convert_sebulk;
-  table["SECONCT"] = {parse_seconct, ". . L", "SEIDA SEIDB TOL LOC"};
-  table["SELOAD"] = {parse_seload, ""};
+  table["SECONCT"] = {parse_seconct, ". . L", name_fields(list_seconct)};
+  table["SELOAD"] = {parse_seload, "", name_fields(list_seload)};
   table["SEBNDRY"] = {parse_sebndry, ""};
   table["EXTRN"] = {parse_extrn, ""};
   table["DTI"] = {parse_dti, ""};
+  write_by(table, {{"SEBULK", write_sebulks},
+                   {"SECONCT", write_seconcts},
+                   {"SEBNDRY", write_sebndries},
+                   {"SELOAD", write_seloads},
+                   {"EXTRN", write_extrn},
+                   {"DTI", write_recovery_tables}});
 }
 
 }  // namespace bough::nastran::detail

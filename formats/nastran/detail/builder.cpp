@@ -76,6 +76,9 @@ class Builder {
     finish_fluid(reading_);
     finish_old_elements(reading_);
     finish_rigid_ids(reading_);
+    // Without tables the set changes no model: subcases that differ in it share theirs.
+    if (deck_.temperatures.materials.empty())
+      for (auto& subcase : deck_.subcases) subcase.material_temperature = 0;
     design_.report(deck_, diagnostics_);
     leftovers_.report(diagnostics_);
     report_names();
@@ -280,13 +283,21 @@ class Builder {
     if (dynamics_ && !is_response_ && !is_complex_ && text_.name == "EPOINT") keep_extra_points();
     if ((entry->parser == nullptr && entry->dynamic == nullptr) || is_default_card(text_.name)) return;
     design_.apply(text_);
-    if (entry->dynamic != nullptr && is_unselected()) return parse_unselected(*entry);
+    if (entry->dynamic != nullptr && is_unselected()) return parse_unselected(*entry, "the set");
+    if (is_unselected_material()) return parse_unselected(*entry, "a temperature of materials");
     Card card(text_, deck_.files, diagnostics_);
     if (entry->dynamic != nullptr)
       entry->dynamic(card, dynamics_->dynamics);
     else
       entry->parser(card, reading_);
     if (card.is_ok()) leftovers_.add(card);
+    if (card.has_unkept()) keep_left_out("fields of " + text_.name + " that are not used");
+  }
+
+  /// Names what no record keeps, for a deck that is written.
+  void keep_left_out(const std::string& text) {
+    if (std::find(deck_.left_out.begin(), deck_.left_out.end(), text) == deck_.left_out.end())
+      deck_.left_out.push_back(text);
   }
 
   void keep_extra_points() {
@@ -295,27 +306,59 @@ class Builder {
     for (const int id : read_ids(card, 0, card.get_size(), "ID")) dynamics_->dynamics.extra_points.insert(id);
   }
 
-  /// Returns true if the card is of a set that a command selects, and no subcase does.
+  /// Returns true if a subcase selects a response, complex modes or residual vectors.
+  bool selects_dynamics() const {
+    using records::DynamicSelection;
+    static constexpr int DynamicSelection::*sets[] = {
+        &DynamicSelection::dload,   &DynamicSelection::loadset, &DynamicSelection::frequency,
+        &DynamicSelection::tstep,   &DynamicSelection::ic,      &DynamicSelection::sdamping,
+        &DynamicSelection::cmethod, &DynamicSelection::tfl,     &DynamicSelection::random,
+        &DynamicSelection::rcross,  &DynamicSelection::rgyro,   &DynamicSelection::rmethod};
+    return std::any_of(dynamics_->selections.begin(), dynamics_->selections.end(), [](const auto& one) {
+      return one.second.resvec.value_or(false) ||
+             std::any_of(std::begin(sets), std::end(sets), [&](auto set) { return one.second.*set != 0; });
+    });
+  }
+
+  /// Returns true if the card is of a set that a command selects, and no subcase does; or, of a deck that is written
+  /// again, if none selects any such card.
   bool is_unselected() const {
+    if (is_complex_ && !selects_dynamics()) return true;
     const auto member = find_selection_of(text_.name);
     const auto set = member && !text_.fields.empty() ? parse_int(text_.fields.front()) : std::nullopt;
     return set && std::none_of(dynamics_->selections.begin(), dynamics_->selections.end(),
                                [&](const auto& selection) { return std::abs(selection.second.*member) == *set; });
   }
 
+  /// Returns true if the card is a table of a material, and no subcase selects a temperature of materials.
+  bool is_unselected_material() const {
+    if (!text_.name.starts_with("TABLEM") && !text_.name.starts_with("MATT")) return false;
+    return std::all_of(deck_.subcases.begin(), deck_.subcases.end(), [](const auto& subcase) {
+      return subcase.material_temperature == 0 && subcase.initial_temperature == 0;
+    });
+  }
+
   /// Nastran uses selected sets only: errors in other sets are warnings, and these sets are not read.
-  void parse_unselected(const NameEntry& entry) {
+  /// \param what  that no subcase selects
+  void parse_unselected(const NameEntry& entry, const char* what) {
     Diagnostics own;
     Card card(text_, deck_.files, own);
-    entry.dynamic(card, dynamics_->dynamics);
+    if (entry.dynamic != nullptr)
+      entry.dynamic(card, dynamics_->dynamics);
+    else
+      entry.parser(card, reading_);
     for (auto item : own.items()) {
       if (item.severity == Severity::Error) {
         item.severity = Severity::Warning;
-        item.what += "; no subcase selects the set, and the card is not used";
+        item.what += std::string("; no subcase selects ") + what + ", and the card is not used";
       }
       diagnostics_.add(std::move(item));
     }
-    if (card.is_ok()) leftovers_.add(card);
+    if (card.is_ok())
+      leftovers_.add(card);
+    else
+      keep_left_out(text_.name + " with errors");
+    if (card.has_unkept()) keep_left_out("fields of " + text_.name + " that are not used");
   }
 
   void keep_unread_load() {
@@ -330,11 +373,8 @@ class Builder {
   void keep_base() {
     const auto kind = find_base(text_.name);
     if (kind == CardBase::None || ignored_.count(text_.name) > 0 || text_.fields.empty()) return;
-    // PELAST and PDAMPT with tables of force over deflection alone are of nonlinear solutions.
-    const std::size_t num_tables = text_.name == "PELAST" ? 2 : text_.name == "PDAMPT" ? 1 : text_.fields.size();
-    const auto first = text_.fields.begin() + 1;
-    const auto last = text_.fields.begin() + static_cast<std::ptrdiff_t>(std::min(num_tables + 1, text_.fields.size()));
-    const bool acts = std::any_of(first, last, [](const auto& field) { return !trim(field).empty(); });
+    const bool acts = std::any_of(text_.fields.begin() + 1, text_.fields.end(),
+                                  [](const auto& field) { return !trim(field).empty(); });
     if (const auto id = parse_int(text_.fields.front()); id && acts) bases_[text_.name].push_back(*id);
   }
 
@@ -346,21 +386,7 @@ class Builder {
       return std::any_of(records.begin(), records.end(), [id](const auto& r) { return r.id == id; });
     };
     return std::any_of(found->second.begin(), found->second.end(), [&](int id) {
-      switch (find_base(name)) {
-        case CardBase::Spring:
-          // The property of no element changes nothing.
-          return std::any_of(deck_.springs.begin(), deck_.springs.end(), [id](const auto& s) { return s.pid == id; });
-        case CardBase::Bush:
-          return std::any_of(deck_.cbush.begin(), deck_.cbush.end(), [id](const auto& b) { return b.pid == id; }) ||
-                 std::any_of(deck_.cbush1d.begin(), deck_.cbush1d.end(), [id](const auto& b) { return b.pid == id; });
-        case CardBase::Damper:
-          return std::any_of(deck_.dampers.begin(), deck_.dampers.end(), [id](const auto& d) { return d.pid == id; });
-        case CardBase::Material:
-          return is_in(deck_.mat1, id) || is_in(deck_.mat2, id) || is_in(deck_.mat8, id) || is_in(deck_.mat9, id);
-        case CardBase::None:
-          break;
-      }
-      return false;
+      return is_in(deck_.mat1, id) || is_in(deck_.mat2, id) || is_in(deck_.mat8, id) || is_in(deck_.mat9, id);
     });
   }
 
@@ -501,7 +527,7 @@ class Builder {
   Replicator replicator_;
   std::unordered_set<std::string> ignored_;
   std::set<std::pair<std::string, int>> unread_sets_;
-  std::map<std::string, std::vector<int>> bases_;  ///< ids that cards such as PELAST and MATT1 extend, by card
+  std::map<std::string, std::vector<int>> bases_;  ///< ids that cards such as MATT1 extend, by card
   std::unordered_map<std::string, NameEntry> names_;
   std::unordered_map<std::string, int> defaults_seen_;  ///< card index
   Design design_;

@@ -73,6 +73,13 @@ class Card {
   void use(int first, int last) {
     for (int i = first; i < std::min(last, size_); ++i) use(i);
   }
+  /// Marks fields as used whose data no record keeps.
+  void use_unkept(int first, int last) {
+    use(first, last);
+    has_unkept_ = has_unkept_ || !is_blank(first, last);
+  }
+  /// Returns true if a field of use_unkept has data.
+  bool has_unkept() const { return has_unkept_; }
   /// First field from `first` on with data that was neither read nor used, or -1. Beyond 64 fields it is what follows
   /// the last one.
   int find_leftover(int first) const;
@@ -142,7 +149,7 @@ class Card {
   int size_;
   int used_end_ = 0;
   std::uint64_t used_ = 0;  ///< bit i: field i
-  bool ok_ = true;
+  bool ok_ = true, has_unkept_ = false;
 };
 
 /// Calls read(first) for the entries of `width` fields that a card has room for: of the first, and of each further one

@@ -138,6 +138,8 @@ class CaseControl {
     if ((is_response() || options_.is_complex) && read_direct_input(c)) return;
     if (options_.is_complex && is_command(c.word, "CMETHOD", 4))
       return read_set(c, "CMETHOD", current_selection().cmethod);
+    if ((is_response() || options_.is_complex) && c.word == "MODSEL")
+      return read_set(c, "MODSEL", current_selection().modsel);
     if (options_.is_complex && c.word == "TFL") return read_set(c, "TFL", current_selection().tfl);
     if ((is_response() || options_.is_complex) && read_rotor_selection(c)) return;
     if (const auto* acts = find_unsupported_command(c.word)) {
@@ -145,7 +147,8 @@ class CaseControl {
       if (acts->scope == CommandScope::Model || is_response() || is_modal_complex(*acts)) return refuse(*acts);
       return note(c.word);
     }
-    if (!is_response() && (is_command(c.word, "RANDOM", 4) || is_command(c.word, "RCROSS", 4))) return note(c.word);
+    const bool is_random = is_command(c.word, "RANDOM", 4) || is_command(c.word, "RCROSS", 4);
+    if (is_random && !is_response() && !options_.is_whole) return note(c.word);
     if (is_command(c.word, "RANDOM", 4) &&
         (asked_to_ignore_.count("RANDOM") > 0 || asked_to_ignore_.count("RANDPS") > 0))
       return diagnostics_.warning("deck.unsupported-command", deck_.locate(at_), "RANDOM selects the random response",
@@ -154,6 +157,8 @@ class CaseControl {
                           ? read_dynamic_command({c.word, c.options, c.value, at_}, current(), current_selection())
                           : DynamicCommand::Other;
     if (read == DynamicCommand::BadValue) return bad_value(c);
+    if (read == DynamicCommand::Read && options_.request_options && !c.options.empty())
+      (*options_.request_options)[{at_.file, at_.line}] = c.options;
     if (read == DynamicCommand::Other && is_response() && c.word == "IC")
       return refuse({"IC", "TIC", "a start other than by TIC cards"});
     if (read == DynamicCommand::Other && !is_plain_command(c.word)) report_unused(c.word);
@@ -198,7 +203,8 @@ class CaseControl {
   /// Returns true for a selection of modes in complex modes by the modal method.
   bool is_modal_complex(const UnsupportedCommand& command) const {
     static const std::set<std::string> modal{"110", "29", "SEMCEIG", "MCEIG"};
-    return options_.is_complex && modal.count(deck_.sol) > 0 && std::string_view(command.name).starts_with("MOD");
+    return options_.is_complex && !options_.is_whole && modal.count(deck_.sol) > 0 &&
+           std::string_view(command.name).starts_with("MOD");
   }
 
   /// SKIPON, SKIPOFF, SKIP ON, SKIP OFF: the commands between them are not part of the case control.
@@ -386,6 +392,7 @@ class CaseControl {
     int material = current().temperature;  // materials depend on the temperature where MATT1 and its kin are
     if (*kind == "MATERIAL") read_set(c, "TEMPERATURE(MATERIAL)", material);
     current().commands["TEMPERATURE(MATERIAL)"] = at_;
+    current().material_temperature = material;
     if (material == 0) current().commands.erase("TEMPERATURE(MATERIAL)");
   }
 

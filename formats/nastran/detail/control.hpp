@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/nastran/detail/lines.hpp"
@@ -19,10 +20,13 @@ struct ControlOptions {
   /// Receives SUBCOM, SYMCOM and REPCASE, and their errors (deck.combination). Both or none; with dynamics.
   std::vector<records::CaseCombination>* combinations = nullptr;
   Diagnostics* combination_diagnostics = nullptr;
+  /// Receives the options of output requests in brackets, by file and line; null: unused.
+  std::map<std::pair<int, int>, std::string>* request_options = nullptr;
   bool notes_combinations = true;       ///< without `combinations`: they are named as not used
   LoadColumns* load_columns = nullptr;  ///< where P2G goes
   bool is_response = true;              ///< with `dynamics`: use the commands of responses
   bool is_complex = false;              ///< with `dynamics`: those of complex modes count (ReadOptions)
+  bool is_whole = false;                ///< with is_complex: the deck is written again, all that it selects is kept
   /// Commands that are only warned of (deck.unsupported-command); of ReadOptions.
   std::vector<std::string> ignore_cards = {};
   std::set<int> superelements = {};  ///< that have a section: subcases of SUPER = n are not the model's

@@ -130,7 +130,6 @@ const UnsupportedCommand* find_unsupported_command(std::string_view word) {
                          "rotors: gyroscopic terms of the response, which RGYRO selects by RSPINR"},
       UnsupportedCommand{"GUST", "GUST", "aerodynamic loads of a gust"},
       UnsupportedCommand{"MODESELECT", "MODESELECT", "the modes that take part in the response", Response, 6},
-      UnsupportedCommand{"MODSEL", "MODSEL", "the modes that take part in the response", Response, 6},
       UnsupportedCommand{"MFLUID", "MFLUID", "the mass of a fluid on the structure", Model},
       UnsupportedCommand{"MASSSET", "MASSSET", "a mass configuration", Model},
       UnsupportedCommand{"DEFORM", "DEFORM", "enforced deformations of elements", StaticLoad},

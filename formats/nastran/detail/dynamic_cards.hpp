@@ -13,7 +13,9 @@
 
 namespace bough::nastran::detail {
 
+struct CardSink;
 using DynamicParser = void (*)(Card&, records::DynamicCards&);
+using DynamicWriter = void (*)(const records::DynamicCards&, CardSink&);
 
 /// A row of their table.
 struct DynamicRow : CardFacts {
@@ -28,12 +30,21 @@ struct DynamicRow : CardFacts {
   }
 
   DynamicParser parse = nullptr;
+  DynamicWriter write = nullptr;  ///< as CardRow::write, with write_order and written_as
+  int write_order = 0;
+  const char* written_as = nullptr;
 };
 using DynamicParserTable = std::unordered_map<std::string_view, DynamicRow>;
 
-/// xLOADn, DLOAD, DAREA, DELAY, DPHASE, LSEQ, TIC, TABLEDn, TABDMP1, FREQn, TSTEP, RANDPS, RANDT1, TABRND1,
-/// TABRNDG.
+/// Cards of responses: those of add_dynamic_loads, add_dynamic_tables and add_dynamic_lists.
 const DynamicParserTable& get_dynamic_parsers();
+void add_dynamic_loads(DynamicParserTable& table);   ///< xLOADn, DLOAD, DAREA, DELAY, DPHASE, LSEQ, TIC
+void add_dynamic_tables(DynamicParserTable& table);  ///< TABLEDn, TABDMP1, TABRND1, TABRNDG
+void add_dynamic_lists(DynamicParserTable& table);   ///< FREQn, TSTEP, USET, RVDOF, RANDPS, RANDT1, RCROSS
+/// Adds PELAST, PDAMPT and PBUSHT.
+void add_frequency_table_parsers(DynamicParserTable& table);
+/// Dimension of the values of a TABLEDi by the properties that name it; "." of loads, "?" if they differ.
+std::string find_table_value(const UnitConverter& u);
 
 /// EIGC, TF, EPOINT: cards of complex modes alone.
 const DynamicParserTable& get_complex_parsers();

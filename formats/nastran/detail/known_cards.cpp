@@ -196,28 +196,20 @@ const char* find_loss(std::string_view name) {
                                          "MAREA", "MPOINT", "INSECT", "TRICON",  "MESHON"};
   if (std::find(generators.begin(), generators.end(), name) != generators.end())
     return "MSGMESH is not executed: the grids and elements that it generates are missing; write them out with Nastran";
+  if (name == "PBUSHT" || name == "PELAST" || name == "PDAMPT")
+    return "its tables act in frequency responses and on rotors: the values of the property count here";
   if (name == "SPCOFF") return "AUTOSPC holds its dofs too when they have no stiffness";
   if (name == "SENQSET") return "sections have the component modes of QSET1 and SPOINT in their own bulk data alone";
   if (name == "SEEXCLD") return "its grids join by their places all the same; name the others by SEBNDRY";
   if (name.substr(0, 2) == "SE" && find_effect(name) && name != "SEQGP" && name != "SET" && name != "SEBULK" &&
-      name != "SECONCT" && name != "SELOAD")
+      name != "SECONCT" && name != "SEBNDRY" && name != "SELOAD")
     return "superelements are not formed: the whole model is solved at once";
   return nullptr;
 }
 
-CardBase find_base(std::string_view name) {
-  static constexpr std::array tables{"MATT1", "MATT2", "MATT8", "MATT9", "MATT11"};
-  if (std::find(tables.begin(), tables.end(), name) != tables.end()) return CardBase::Material;
-  if (name == "PELAST") return CardBase::Spring;
-  if (name == "PBUSHT") return CardBase::Bush;
-  return name == "PDAMPT" ? CardBase::Damper : CardBase::None;
-}
+CardBase find_base(std::string_view name) { return name == "MATT11" ? CardBase::Material : CardBase::None; }
 
 std::optional<ResponseEffect> find_response_effect(std::string_view name) {
-  if (name == "PBUSHT" || name == "PELAST")
-    return ResponseEffect{"gives stiffness and damping over frequency", false, " computes with the nominal values"};
-  if (name == "PDAMPT")
-    return ResponseEffect{"gives damping over frequency", false, " computes with the nominal values"};
   if (name == "EPOINT") return ResponseEffect{"adds dofs to a response", false, " computes without them"};
   if (name == "TF") return ResponseEffect{"TFL", true, ""};
   if (name.substr(0, 5) == "NOLIN") return ResponseEffect{"NONLINEAR", true, ""};

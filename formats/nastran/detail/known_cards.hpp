@@ -24,9 +24,9 @@ struct ResponseEffect {
 };
 /// Returns the effect of a card that acts in responses alone; none for other cards.
 std::optional<ResponseEffect> find_response_effect(std::string_view name);
-/// Kind of card that another makes dependent on frequency (PELAST, PBUSHT, PDAMPT) or on temperature (MATTi).
-enum class CardBase { None, Spring, Bush, Damper, Material };
-/// Returns the kind of card that `name` makes dependent on frequency or temperature.
+/// Kind of card that another makes dependent on temperature (MATTi).
+enum class CardBase { None, Material };
+/// Returns the kind of card that `name` makes dependent on temperature.
 CardBase find_base(std::string_view name);
 /// Returns the effect as a noun, "stiffness" or "a constraint".
 const char* get_effect_name(records::CardEffect effect);

@@ -5,29 +5,16 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <optional>
 
-#include "base/file_roles.hpp"
+#include "base/input_bytes.hpp"
 #include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<std::string> read_file(const fs::path& path) {
-  std::error_code failed;
-  if (!fs::is_regular_file(path, failed)) return std::nullopt;
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) return std::nullopt;
-  note_input(path.string());
-  std::string bytes(static_cast<std::size_t>(in.tellg()), '\0');
-  in.seekg(0);
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!in) return std::nullopt;
-  return bytes;
-}
 
 std::string expand_tabs(std::string_view text) {
   std::string wide;
@@ -291,15 +278,15 @@ class Loader {
     auto known = std::find(source_.files.begin(), source_.files.end(), shown);
     const bool is_new = known == source_.files.end();
     if (is_new) {
-      auto bytes = read_file(*path);
+      auto bytes = read_input(path->string());
       if (!bytes) {
         diagnostics_.error("deck.include-missing", where, "included file '" + name + "' cannot be read",
                            "check its permissions");
         return;
       }
-      source_.storage.push_back(std::move(*bytes));
       known = source_.files.insert(known, shown);
-      source_.texts.push_back(source_.storage.back());
+      source_.texts.push_back(*bytes);
+      source_.bytes.push_back(std::move(bytes));
     }
     const std::string_view text = source_.texts[static_cast<std::size_t>(known - source_.files.begin())];
     if (!is_new) repeated_ += text.size();
@@ -328,15 +315,15 @@ class Loader {
   bool done_ = false;
 };
 
-void load_root(Source& source, std::string bytes, const std::string& name, const std::string& canonical,
-               const fs::path& folder, Diagnostics& diagnostics) {
+void load_root(Source& source, std::shared_ptr<const std::string> bytes, const std::string& name,
+               const std::string& canonical, const fs::path& folder, Diagnostics& diagnostics) {
   source.files.push_back(name);
-  source.storage.push_back(std::move(bytes));
-  source.texts.push_back(source.storage.back());
-  source.lines.reserve(source.storage.back().size() / 60);
+  source.texts.push_back(*bytes);
+  source.bytes.push_back(bytes);
+  source.lines.reserve(bytes->size() / 60);
   Loader loader(source, diagnostics);
   loader.push(canonical);
-  loader.load(source.storage.back(), 0, folder);
+  loader.load(*bytes, 0, folder);
   loader.pop();
 }
 
@@ -344,21 +331,21 @@ void load_root(Source& source, std::string bytes, const std::string& name, const
 
 Source read_source(const std::string& path, Diagnostics& diagnostics) {
   Source source;
-  auto bytes = read_file(path);
+  const auto bytes = read_input(path);
   if (!bytes) {
     diagnostics.error("deck.cannot-open", {path, 0, 0}, "the deck cannot be read", "check that the file exists");
     source.files.push_back(path);
     return source;
   }
   std::error_code failed;
-  load_root(source, std::move(*bytes), path, fs::weakly_canonical(path, failed).string(), fs::path(path).parent_path(),
+  load_root(source, bytes, path, fs::weakly_canonical(path, failed).string(), fs::path(path).parent_path(),
             diagnostics);
   return source;
 }
 
 Source read_source_text(std::string_view text, const std::string& name, Diagnostics& diagnostics) {
   Source source;
-  load_root(source, std::string(text), name, name, {}, diagnostics);
+  load_root(source, std::make_shared<const std::string>(text), name, name, {}, diagnostics);
   return source;
 }
 

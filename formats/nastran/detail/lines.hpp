@@ -1,6 +1,7 @@
 #pragma once
 /// \file Physical lines of a deck with its INCLUDE files in their place.
 #include <deque>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,7 +30,8 @@ struct Source {
   std::vector<Line> lines;
   std::vector<IncludeLine> includes;
   std::vector<std::size_t> after_empty;  ///< positions in `lines`, ascending, of those after an empty line
-  std::deque<std::string> storage;       ///< what the lines point into; never moved
+  std::vector<std::shared_ptr<const std::string>> bytes;  ///< of the files, which texts and lines point into
+  std::deque<std::string> storage;                        ///< other text that lines point into; never moved
 };
 
 /// Reads a file and what it includes. Adds deck.cannot-open, deck.include-missing, deck.include-cycle,

@@ -57,6 +57,8 @@ void add_old_constraint_parsers(ParserTable& table);      ///< CRIGD1, CRIGD2, C
 void add_old_shell_parsers(ParserTable& table);           ///< CQUAD1, CTRIA1, CQDMEM, CTRPLT ... and their properties
 void add_old_solid_parsers(ParserTable& table);           ///< CHEXA1, CHEXA2, CWEDGE, CIHEX1 to CIHEX3, PIHEX, CELBOW
 void add_temperature_parsers(ParserTable& table);         ///< TEMP, TEMPD, TEMPRB, TEMPP1
+void add_material_table_parsers(ParserTable& table);      ///< MATT1, MATT2, MATT8, MATT9, TABLEM1 to TABLEM4
+void add_connector_parsers(ParserTable& table);           ///< CFAST, PFAST, CWELD, PWELD
 void add_special_element_parsers(ParserTable& table);     ///< PBCOMP, GENEL, CGAP, PGAP, CBEND, PBEND
 void add_special_constraint_parsers(ParserTable& table);  ///< RBAR1, RJOINT, RTRPLT, RTRPLT1, RSPLINE
 void add_nonstructural_parsers(ParserTable& table);       ///< NSM, NSM1, NSML, NSML1, NSMADD

@@ -2,6 +2,7 @@
 /// \file Conversion of the fields of a deck to other units, card by card: what CardFacts::convert and note work with.
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "formats/nastran/detail/text.hpp"
 #include "formats/nastran/unit_conversion.hpp"
@@ -20,7 +21,9 @@ struct UnitNotes {
   std::map<std::string, std::string> matrix_kinds;  ///< of DMIG, by name
   std::set<std::string> polar_matrices;             ///< amplitude and phase
   std::set<std::string> grids;                      ///< ids as written
-  std::map<std::string, std::set<std::string>> table_axes;  ///< by TID: "Hz", "T"
+  std::map<std::string, std::set<std::string>> table_axes;    ///< by TID: "Hz", "T"
+  std::map<std::string, std::set<std::string>> table_values;  ///< by TID: words of the values, of PBUSHT and the like
+  std::vector<std::tuple<std::string, std::string, std::string>> spring_tables;  ///< "CELAS" or "CDAMP", PID, TID
   std::map<std::string, std::set<int>> enforced;  ///< by EXCITEID: 0 force, 1 motion, 2 velocity, 3 acceleration
   int default_system = 0;                         ///< CP of GRDSET
 };

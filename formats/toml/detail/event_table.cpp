@@ -25,7 +25,7 @@ records::UserEventRecord read_event(const Fields& table, Diagnostics& diagnostic
       {"lock", records::EventAction::Lock},     {"release", records::EventAction::Release},
       {"break", records::EventAction::Break},   {"close", records::EventAction::Close},
       {"enable", records::EventAction::Enable}, {"disable", records::EventAction::Disable},
-      {"switch", records::EventAction::Switch}};
+      {"switch", records::EventAction::Switch}, {"level", records::EventAction::Level}};
   const auto action = actions.find(table.get_string("action", "log"));
   if (action != actions.end()) event.action = action->second;
   using records::EventAction;
@@ -38,18 +38,24 @@ records::UserEventRecord read_event(const Fields& table, Diagnostics& diagnostic
   if (!of_constraint) refuse_keys(table, {"constraint"}, because, diagnostics);
   if (!of_controller) refuse_keys(table, {"controller"}, because, diagnostics);
   if (event.action != EventAction::Switch) refuse_keys(table, {"input"}, because, diagnostics);
+  const bool of_level = event.action == EventAction::Level;
+  if (!of_level) refuse_keys(table, {"body", "level"}, because, diagnostics);
   const auto demand = [&](const char* key) {
     if (!table.has(key))
       diagnostics.error("toml.missing-key", event.at, "missing key '" + std::string(key) + "' " + because, "add it");
   };
-  const char* needed = of_hinge ? "hinge" : of_constraint ? "constraint" : "controller";
-  if (of_hinge || of_constraint || of_controller) {
+  const char* needed = of_hinge ? "hinge" : of_constraint ? "constraint" : of_level ? "body" : "controller";
+  if (of_hinge || of_constraint || of_controller || of_level) {
     event.target = table.get_string(needed);
     demand(needed);
   }
   if (event.action == EventAction::Switch) {
     event.choice = table.get_int("input", 0);
     demand("input");
+  }
+  if (of_level) {
+    event.choice = table.get_int("level", 0);
+    demand("level");
   }
   event.coordinates = table.get_ints("coordinates");
   return event;

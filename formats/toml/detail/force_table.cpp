@@ -41,12 +41,13 @@ const std::map<std::string, Keys>& get_types() {
        {ElementType::CentralGravity, {"mu"}, {"centre", "j2", "radius", "axis", "bodies", "dipole"}}},
       {"drag",
        {ElementType::Drag,
-        {"body", "area", "coefficient", "density"},
-        {"node", "position", "normal", "wind", "planet", "scale_height", "altitude", "spin"}}},
+        {"body", "coefficient"},
+        {"area", "node", "position", "normal", "elements", "one_sided", "wind", "planet", "density", "scale_height",
+         "altitude", "density_table", "spin"}}},
       {"solar_pressure",
        {ElementType::SolarPressure,
-        {"body", "normal", "area", "pressure", "sun"},
-        {"node", "position", "specular", "diffuse", "planet", "sun_size", "one_sided"}}}};
+        {"body", "pressure", "sun"},
+        {"normal", "area", "elements", "node", "position", "specular", "diffuse", "planet", "sun_size", "one_sided"}}}};
   return types;
 }
 
@@ -119,6 +120,7 @@ void read_element(const Fields& table, const Keys& keys, ForceElementRecord& e, 
   e.spring_table = table.get_string("spring_table");
   e.damper_table = table.get_string("damper_table");
   e.function = table.get_string("function");
+  e.density_table = table.get_string("density_table");
   if (table.get_bool("tension_only", false)) e.sense = records::SpringSense::Tension;
   if (table.get_bool("compression_only", false)) e.sense = records::SpringSense::Compression;
   e.shape = table.get_string("shape") == "sphere" ? records::ContactShape::Sphere : records::ContactShape::Plane;
@@ -146,6 +148,8 @@ void read_element(const Fields& table, const Keys& keys, ForceElementRecord& e, 
   e.bodies = table.get_strings("bodies");
   e.planet = table.get_string("planet");
   e.sun_size = table.get_number("sun_size", kSunSize);
+  e.has_faces = table.has("elements");
+  e.faces = table.get_ints("elements");
   e.is_one_sided = table.get_bool("one_sided", false);
 }
 
@@ -159,6 +163,25 @@ void read_typed(const Fields& table, const std::string& type, records::SystemSpe
   const std::string because = "in force '" + e.name + "' of type " + type;
   for (const auto& key : keys.needed) demand(table, key, because, diagnostics);
   if (keys.type == ElementType::Spring && table.has("stiffness")) demand(table, "free_length", because, diagnostics);
+  if (keys.type == ElementType::Drag && !table.has("density_table")) demand(table, "density", because, diagnostics);
+  const bool has_panel = keys.type == ElementType::Drag || keys.type == ElementType::SolarPressure;
+  if (table.has("elements")) {
+    const std::string word = table.get_string("elements", "all");
+    if (word != "all")
+      diagnostics.error("toml.bad-value", table.locate("elements"), "'elements' is '" + word + "' " + because,
+                        "give a list of ids, or \"all\"");
+    for (const char* key : {"area", "normal", "node", "position"})
+      if (table.has(key)) refuse(table, key, because + ", which acts on the faces of elements", diagnostics);
+  } else if (has_panel) {
+    demand(table, "area", because + ", which has no elements", diagnostics);
+    if (keys.type == ElementType::SolarPressure)
+      demand(table, "normal", because + ", which has no elements", diagnostics);
+    else if (table.has("one_sided"))
+      refuse(table, "one_sided", because + ", which has no elements", diagnostics);
+  }
+  if (table.has("density_table"))
+    for (const char* key : {"density", "scale_height", "altitude"})
+      if (table.has(key)) refuse(table, key, because + ", which has a density_table", diagnostics);
   if (keys.type == ElementType::SolarPressure && table.has("sun_size"))
     demand(table, "planet", because + ", whose sun_size is that of its shadow", diagnostics);
   if (keys.type == ElementType::CentralGravity && table.has("bodies") && table.get_strings("bodies").empty())

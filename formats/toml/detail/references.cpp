@@ -128,13 +128,16 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     using records::EventAction;
     const bool of_hinge = event.action == EventAction::Lock || event.action == EventAction::Release;
     const bool of_constraint = event.action == EventAction::Break || event.action == EventAction::Close;
+    const bool of_level = event.action == EventAction::Level;
     checker.check(event.target,
                   of_hinge        ? hinges
                   : of_constraint ? constraints
+                  : of_level      ? bodies
                                   : controllers,
                   "event '" + event.name + "'",
                   of_hinge        ? "hinge"
                   : of_constraint ? "constraint"
+                  : of_level      ? "body"
                                   : "controller",
                   event.at);
   }
@@ -148,7 +151,7 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     checker.check(force.from.body, with({"ground"}), role, "body", force.at);
     checker.check(force.to.body, with({"ground"}), role, "body", force.at);
     for (const auto& name : force.bodies) checker.check(name, bodies, role, "body", force.at);
-    for (const auto* name : {&force.spring_table, &force.damper_table, &force.function})
+    for (const auto* name : {&force.spring_table, &force.damper_table, &force.function, &force.density_table})
       checker.check(*name, functions, role, "function", force.at);
   }
   for (const auto& sensor : spec.sensors) {

@@ -1,5 +1,6 @@
 #include "formats/toml/detail/tank_table.hpp"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -95,8 +96,23 @@ records::TankRecord read_tank(const Fields& table, Diagnostics& diagnostics) {
   tank.sloshes = table.get_bool("slosh", false);
   tank.slosh_damping = table.get_number("slosh_damping", 0);
   tank.slosh_acceleration = table.get_number("slosh_acceleration", 0);
+  if (table.get_string("slosh_model") == "spring") tank.slosh_model = records::SloshModel::Spring;
+  tank.slosh_viscosity = table.get_number("slosh_viscosity", 0);
+  tank.baffle_width = table.get_number("baffle_width", 0);
+  tank.baffle_depths = table.get_numbers("baffle_depths");
+  tank.baffle_amplitude = table.get_number("baffle_amplitude", 0);
   if (!tank.sloshes)
-    refuse_keys(table, {"slosh_damping", "slosh_acceleration"}, because + ", which does not slosh", diagnostics);
+    refuse_keys(table,
+                {"slosh_damping", "slosh_acceleration", "slosh_model", "slosh_viscosity", "baffle_width",
+                 "baffle_depths", "baffle_amplitude"},
+                because + ", which does not slosh", diagnostics);
+  constexpr const char* kBaffle[] = {"baffle_width", "baffle_depths", "baffle_amplitude"};
+  const auto has = [&](const char* key) { return table.has(key); };
+  if (tank.sloshes && std::any_of(std::begin(kBaffle), std::end(kBaffle), has))
+    for (const char* key : kBaffle)
+      if (!has(key))
+        diagnostics.error("toml.missing-key", table.locate(), "'" + std::string(key) + "' is missing " + because,
+                          "baffles have a width, depths below the free surface, and the amplitude of the wave");
   tank.exit_node = table.get_int("exit_node", 0);
   tank.exit_radius = table.get_number("exit_radius", 0);
   tank.exit_axis = table.get_vector("exit_axis", tank.exit_axis);

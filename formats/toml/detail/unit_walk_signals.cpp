@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "formats/toml/detail/unit_walk.hpp"
+#include "formats/toml/detail/key_units.hpp"
 #include "formats/toml/key_editor.hpp"
 
 namespace bough::toml_files {
@@ -52,8 +52,9 @@ std::vector<double> list_inputs(const UnitTable& t, SignalUnits& units, const ch
   return all;
 }
 
-/// Multiplies a matrix, whose columns are of the inputs.
-void scale_columns(const UnitTable& t, const char* key, double factor, const std::vector<double>& inputs) {
+}  // namespace
+
+void scale_columns(const UnitTable& t, const char* key, double factor, const Units& inputs) {
   const auto* node = t.get(key);
   if (node == nullptr) return;
   const bool is_alike = std::all_of(inputs.begin(), inputs.end(), [&](double u) { return is_near(u, inputs[0]); });
@@ -83,7 +84,7 @@ void scale_polynomial(const UnitTable& t, const char* key, double factor, double
     t.edits.scale(list->get(i), factor * std::pow(time, static_cast<double>(list->size() - 1 - i)));
 }
 
-void rewrite(const UnitTable& t, const char* key, double factor, double time, const std::vector<double>& inputs) {
+void rewrite_formulas(const UnitTable& t, const char* key, double factor, double time, const Units& inputs) {
   const auto one = [&](const toml::node& node) {
     const auto* formula = node.as_string();
     if (formula == nullptr) return;
@@ -97,8 +98,6 @@ void rewrite(const UnitTable& t, const char* key, double factor, double time, co
   else
     one(*node);
 }
-
-}  // namespace
 
 void change_controller(const UnitTable& t, SignalUnits& units) {
   const std::string type = t.text("type");
@@ -118,56 +117,29 @@ void change_controller(const UnitTable& t, SignalUnits& units) {
   if (t.table.contains("file") && !(units.change().is_none()))
     return t.error("toml.unit-file", "file", "the numbers are in another file",
                    "convert them by hand, or write them here");
-  for (const char* key : {"sample_time", "delay", "filter", "windup_time", "lead", "lag"}) t.scale(key, time);
-  t.scale("frequency_hz", 1 / time);
-  if (type == "transfer_function") {
-    scale_polynomial(t, "numerator", out / in, is_sampled ? 1 : time);
-    scale_polynomial(t, "denominator", 1, is_sampled ? 1 : time);
-  } else if (type == "state_space") {
-    t.scale("A", is_sampled ? 1 : 1 / time);
-    scale_columns(t, "B", is_sampled ? 1 : 1 / time, inputs);
-    t.scale("C", out);
-    scale_columns(t, "D", out, inputs);
-  } else if (type == "pid") {
-    t.scale("kp", out / in);
-    t.scale("ki", out / in / time);
-    t.scale("kd", out / in * time);
-    t.scale("setpoint", in);
-    for (const char* key : {"lower", "upper"}) t.scale(key, out);
+  if (type == "pid") {
     for (const auto& [port, unit] : {std::pair{"reference", in}, std::pair{"rate", in / time}})
       for (const double got : list_inputs(t, units, port, port))
         if (!is_near(got, unit))
           t.error("toml.unit-signal", port, std::string("the ") + port + " has another unit than the input",
                   "put a gain on the way");
-  } else if (type == "gain") {
-    scale_columns(t, "gain", out, inputs);
-  } else if (type == "sum") {
-    if (t.table.contains("weights"))
-      scale_columns(t, "weights", out, inputs);
-    else if (!is_alike)
-      t.error("toml.unit-signal", "inputs", "it adds different quantities", "give it weights");
-  } else if (type == "product") {
-    double all = 1;
-    for (const double input : inputs) all *= input;
-    t.scale_or_add("gain", out / all);
-  } else if (type == "limit" || type == "pwpf") {
-    for (const char* key : {"lower", "upper", "deadband", "on", "off", "value"}) t.scale(key, in);
-  } else if (type == "lead_lag") {
-    if (t.table.contains("gain")) t.scale("gain", out / in);
-  } else if (type == "relay") {
-    for (const char* key : {"on", "off"}) t.scale(key, in);
-    for (const char* key : {"value", "low"}) t.scale(key, out);
-  } else if (type == "table") {
-    t.scale("x", in);
-    t.scale("x2", inputs.size() > 1 ? inputs[1] : in);
-    t.scale("y", out);
-  } else if (type == "switch") {
-    for (const char* key : {"threshold", "hysteresis"}) t.scale(key, inputs.empty() ? 1 : inputs.back());
-    if (inputs.size() > 1 && !is_near(inputs[1], in))
-      t.error("toml.unit-signal", "inputs", "it switches between different quantities", "put a gain on the way");
-  } else if (type == "expression") {
-    rewrite(t, "expression", out, time, inputs);
+  } else if (type == "switch" && inputs.size() > 1 && !is_near(inputs[1], in)) {
+    t.error("toml.unit-signal", "inputs", "it switches between different quantities", "put a gain on the way");
   }
+  double product = 1;
+  for (const double input : inputs) product *= input;
+  const auto find = [&](const std::string& word, const std::string&, const UnitTable&) -> Units {
+    if (word == "out") return {out};
+    if (word == "in") return {in};
+    if (word == "in2") return {inputs.size() > 1 ? inputs[1] : in};
+    if (word == "last") return {inputs.empty() ? 1 : inputs.back()};
+    if (word == "inputs") return {product};
+    if (word == "step") return {is_sampled ? 1 : time};
+    return {};
+  };
+  KeyContext context{find};
+  context.inputs = inputs;
+  scale_keys(t, "controller", units.change(), context);
 }
 
 void change_actuator(const UnitTable& t, SignalUnits& units) {
@@ -181,21 +153,12 @@ void change_actuator(const UnitTable& t, SignalUnits& units) {
   const auto inputs = list_inputs(t, units, "input", "");
   for (const double input : inputs)
     if (!is_near(input, inputs[0])) t.error("toml.unit-signal", "input", "commands of two units", "make them alike");
-  t.scale_or_add("scale", inputs.empty() ? 1 : command / inputs[0]);
-  for (const char* key : {"bias", "deadband", "lower", "upper", "initial"}) t.scale(key, command);
-  t.scale("rate_limit", command / c.time);
-  for (const char* key : {"lag", "shortest_pulse"}) t.scale(key, c.time);
-  for (const char* key : {"torque_constant", "coulomb"}) t.scale(key, effort);
-  t.scale("back_emf", command / rate);
-  t.scale("resistance", command);
-  t.scale("viscous", effort / rate);
-  t.scale("stick_rate", rate);
-  t.scale("thrust", units.force());
-  t.scale("exit_radius", c.length);
-  t.scale("exhaust_velocity", c.length / c.time);
-  t.scale("inertia", c.mass * c.length * c.length);
-  for (const char* key : {"momentum", "momentum_limit"}) t.scale(key, torque * c.time);
-  t.scale_angles("angle");
+  const auto find = [&](const std::string& word, const std::string&, const UnitTable&) -> Units {
+    if (word == "command") return {command};
+    if (word == "in") return {inputs.empty() ? command : inputs[0]};
+    return word == "effort" ? Units{effort} : word == "rate" ? Units{rate} : Units{};
+  };
+  scale_keys(t, "actuator", c, {find});
 }
 
 void change_sensor(const UnitTable& t, SignalUnits& units) {
@@ -209,24 +172,10 @@ void change_sensor(const UnitTable& t, SignalUnits& units) {
               "reduce the body first, or give a component");
     own = {1};
   }
-  for (const char* key : {"lag", "sample_time", "delay"}) t.scale(key, c.time);
-  for (const char* key : {"initial", "bias", "quantization"}) t.scale(key, own);
-  const bool is_one = std::all_of(own.begin(), own.end(), [&](double u) { return is_near(u, own[0]); });
-  const char* single[] = {"range", "noise_density", "random_walk"};
-  const double factors[] = {own[0], own[0] * std::sqrt(c.time), own[0] / std::sqrt(c.time)};
-  for (int i = 0; i < 3; ++i) {
-    if (t.get(single[i]) && !is_one)
-      t.error("toml.unit-signal", single[i], "one number for components of several units", "make a sensor of each");
-    else
-      t.scale(single[i], factors[i]);
-  }
-  const std::string type = t.text("type");
-  if (type == "horizon" || type == "distance") t.scale("target", c.length);
-  if (const auto* terms = t.table["terms"].as_array())
-    for (const auto& term : *terms)
-      if (const auto* item = term.as_table()) t.edits.scale(item->get("displacement"), 1 / c.length);
-  t.scale_angles("rotation");
-  t.scale_angles("misalignment");
+  const auto find = [&](const std::string& word, const std::string&, const UnitTable&) {
+    return word == "signal" ? own : Units{};
+  };
+  scale_keys(t, "sensor", c, {find});
 }
 
 namespace {
@@ -255,6 +204,7 @@ std::vector<Characteristic> list_characteristics(const std::string& name, const 
   for (const auto* force : list_tables(root, "force")) {
     if (get_text(*force, "spring_table") == name) found.push_back({c.length, units.force()});
     if (get_text(*force, "damper_table") == name) found.push_back({c.length / c.time, units.force()});
+    if (get_text(*force, "density_table") == name) found.push_back({c.length, c.mass / std::pow(c.length, 3)});
   }
   return found;
 }
@@ -278,28 +228,12 @@ void change_function(const UnitTable& t, SignalUnits& units) {
       return t.error("toml.unit-use", "name", "it is used for different quantities", "make a function of each");
   if (t.get("file") && !(is_near(value, 1) && is_near(x, 1)))
     return t.error("toml.unit-file", "file", "the table is in another file", "convert the columns by hand");
-  for (const char* key : {"value", "before", "amplitude", "offset"}) t.scale_angles(key, value);
-  for (const char* key : {"at", "from", "to", "width", "duration"}) t.scale(key, time);
-  for (const char* key : {"frequency_hz", "omega", "from_hz", "to_hz"}) t.scale_angles(key, 1 / time);
-  t.scale_angles("phase");
-  if (type == "harmonics") {
-    const auto* power = t.get("power");
-    t.scale("y", value * std::pow(time, power != nullptr ? power->value_or(2.0) : 2.0));
-    t.scale_angles("omega_rate", 1 / (time * time));
-  } else if (type == "random") {
-    t.scale("x", 1 / time);
-    t.scale("y", value * value * time);
-  } else {
-    t.scale("x", x);
-    t.scale("y", value);
-  }
-  if (type == "spinup") t.scale_angles("rate", value / time);
-  if (type == "expression") {
-    rewrite(t, "expression", value, time, {});
-    rewrite(t, "rate", value / time, time, {});
-    rewrite(t, "acceleration", value / (time * time), time, {});
-  }
-  if (type == "product") t.scale_or_add("gain", value);
+  const auto find = [&](const std::string& word, const std::string&, const UnitTable& at) -> Units {
+    if (word == "value") return {value};
+    if (word == "x") return {x};
+    return word == "power" ? Units{at.table["power"].value_or(2.0)} : Units{};
+  };
+  scale_keys(t, "function", units.change(), {find});
   if (type == "sum" || type == "product") {
     std::vector<std::string> members;
     if (const auto* list = t.table["of"].as_array())

@@ -53,8 +53,9 @@ records::BodyMesh make_mesh(Numbers& r, int p) {
   for (const char* type : {"quad4", "line2", "line2"}) {
     records::BodyMesh::Block block;
     block.type = type;
-    block.connectivity.resize(p - 1, type[0] == 'q' ? 4 : 2);
-    for (int e = 0; e < p - 1; ++e) {
+    const int count = p - 1 + static_cast<int>(mesh.blocks.size());  // another number of elements in each
+    block.connectivity.resize(count, type[0] == 'q' ? 4 : 2);
+    for (int e = 0; e < count; ++e) {
       block.element_id.push_back(10 * e + static_cast<int>(mesh.blocks.size()));
       for (int k = 0; k < block.connectivity.cols(); ++k) block.connectivity(e, k) = (e + k) % p;
     }

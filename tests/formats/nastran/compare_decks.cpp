@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <set>
+
+#include "tests/support/paths.hpp"
 
 namespace bough::nastran {
 namespace {
@@ -177,6 +180,25 @@ class Content {
     (*this)(r.id)(r.mid)(r.A)(r.I1)(r.I2)(r.J)(r.k1)(r.k2)(r.rb)(r.theta_b_deg)(r.nsm)(r.rc)(r.zc);
     return (*this)(r.delta_n)(r.is_pipe)(r.fsi)(r.rm)(r.t)(r.pressure);
   }
+  Content& operator()(const Cfast& r) {
+    return (*this)(r.id)(r.pid)(r.by_elements)(r.ida)(r.idb)(r.gs)(r.ga)(r.gb)(r.xs);
+  }
+  Content& operator()(const Pfast& r) {
+    (*this)(r.id)(r.d)(r.mcid)(r.mflag)(r.mass)(r.ge);
+    for (const double k : r.kt) (*this)(k);
+    for (const double k : r.kr) (*this)(k);
+    return *this;
+  }
+  Content& operator()(const Cweld& r) {
+    (*this)(r.id)(r.pid)(r.format)(r.gs)(r.ga)(r.gb)(r.types)(r.ida)(r.idb);
+    return (*this)(r.grids_a)(r.grids_b)(r.xs);
+  }
+  Content& operator()(const Pweld& r) { return (*this)(r.id)(r.mid)(r.d)(r.is_spot)(r.ld_min)(r.ld_max); }
+  Content& operator()(const MaterialTables& r) { return (*this)(r.material)(r.mid)(r.tables); }
+  Content& operator()(const FunctionTable& r) {
+    (*this)(r.id)(r.kind)(r.is_log_x)(r.is_log_y)(r.is_flat)(r.x1)(r.x2)(r.x3)(r.x4);
+    return (*this)(r.points)(r.coefficients);
+  }
   Content& operator()(const Cgap& r) { return (*this)(r.id)(r.pid)(r.ga)(r.gb)(r.g0)(r.v)(r.cid); }
   Content& operator()(const Pgap& r) { return (*this)(r.id)(r.u0)(r.f0)(r.ka)(r.kb)(r.kt); }
   Content& operator()(const NonstructuralMass& r) {
@@ -191,9 +213,84 @@ class Content {
   Content& operator()(const Param& r) { return (*this)(r.name)(r.value); }
   Content& operator()(const Subcase& r) {
     (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub)(r.preload)(r.temperature);
-    (*this)(r.initial_temperature);
+    (*this)(r.initial_temperature)(r.material_temperature);
     return (*this)(r.suport1)(r.nsm)(r.k2gg)(r.m2gg)(r.b2gg);
   }
+
+  Content& operator()(const DynamicLoad& r) {
+    (*this)(static_cast<int>(r.kind))(static_cast<int>(r.excitation))(r.sid)(r.excite)(r.delay_set)(r.phase_set);
+    (*this)(r.delay)(r.phase_deg)(r.table_a)(r.table_b)(r.a)(r.b);
+    return (*this)(r.t1)(r.t2)(r.frequency_hz)(r.growth)(r.power);
+  }
+  Content& operator()(const DynamicLoadSum& r) { return (*this)(r.sid)(r.s)(r.terms); }
+  Content& operator()(const DofValue& r) { return (*this)(r.sid)(r.g)(r.c)(r.value); }
+  Content& operator()(const StaticExcitation& r) { return (*this)(r.sid)(r.excite)(r.load)(r.temperature); }
+  Content& operator()(const InitialMotion& r) { return (*this)(r.sid)(r.g)(r.c)(r.u0)(r.v0); }
+  Content& operator()(const FrequencyTables& r) { return (*this)(r.property)(r.pid)(r.k)(r.b)(r.ge); }
+  Content& operator()(const DampingCurve& r) { return (*this)(r.id)(r.type)(r.points); }
+  Content& operator()(const FrequencyList& r) {
+    return (*this)(r.sid)(r.kind)(r.values)(r.f1)(r.f2)(r.count)(r.is_log)(r.spread);
+  }
+  Content& operator()(const TimeSteps::Part& r) { return (*this)(r.count)(r.step)(r.every); }
+  Content& operator()(const TimeSteps& r) { return (*this)(r.sid)(r.parts); }
+  Content& operator()(const SpectralTerm& r) { return (*this)(r.sid)(r.j)(r.k)(r.x)(r.y)(r.table); }
+  Content& operator()(const GustSpectrum& r) { return (*this)(r.id)(r.is_dryden)(r.length_over_speed)(r.rms); }
+  Content& operator()(const TimeLags& r) { return (*this)(r.sid)(r.count)(r.first)(r.last); }
+  Content& operator()(const CrossRequest::Output& r) { return (*this)(r.quantity)(r.id)(r.component); }
+  Content& operator()(const CrossRequest& r) { return (*this)(r.sid)(r.a)(r.b)(r.curve); }
+  Content& operator()(const ResidualDofs& r) { return (*this)(r.first)(r.last)(r.components); }
+  Content& operator()(const ComplexMethod::Shift& r) { return (*this)(r.alpha)(r.omega)(r.num_modes); }
+  Content& operator()(const ComplexMethod& r) {
+    return (*this)(r.sid)(r.method)(r.norm)(r.norm_grid)(r.norm_component)(r.num_modes)(r.shifts);
+  }
+  Content& operator()(const TransferFunction::Term& r) { return (*this)(r.g)(r.c)(r.a0)(r.a1)(r.a2); }
+  Content& operator()(const TransferFunction& r) { return (*this)(r.sid)(r.of)(r.terms); }
+  Content& operator()(const RotorLine::Range& r) { return (*this)(r.first)(r.last)(r.step)(r.is_thru); }
+  Content& operator()(const RotorLine& r) { return (*this)(r.id)(r.grids); }
+  Content& operator()(const RotorSpin& r) {
+    (*this)(r.rotor)(r.grid_a)(r.grid_b)(r.unit)(r.table)(r.rate)(r.gr)(r.alpha1)(r.alpha2);
+    return (*this)(r.wr3)(r.wr4);
+  }
+  Content& operator()(const RotorAnalysis& r) {
+    return (*this)(r.sid)(r.reference)(r.is_synchronous)(r.unit)(r.low)(r.high)(r.speeds)(r.speed);
+  }
+  Content& operator()(const SpeedList& r) { return (*this)(r.sid)(r.count)(r.first)(r.step); }
+  Content& operator()(const ValueList& r) { return (*this)(r.id)(r.values); }
+  Content& operator()(const RotorSweepCard::Rotor& r) {
+    return (*this)(r.id)(r.line)(r.speed)(r.cid)(r.is_rotating)(r.has_stress)(r.w3)(r.w4);
+  }
+  Content& operator()(const RotorSweepCard& r) {
+    return (*this)(r.sid)(r.count)(r.first)(r.step)(r.shapes_at)(r.rotors);
+  }
+  Content& operator()(const Unbalance& r) {
+    (*this)(r.sid)(r.grid)(r.mass)(r.radius)(r.offset)(r.mass_table)(r.radius_table)(r.offset_table);
+    return (*this)(r.x[0])(r.x[1])(r.x[2])(r.angle_deg)(r.from_hz)(r.to_hz);
+  }
+  Content& operator()(const CaseSet::Range& r) { return (*this)(r.first)(r.last)(r.is_excluded); }
+  Content& operator()(const CaseSet& r) { return (*this)(r.is_all)(r.ranges); }
+  Content& operator()(const OutputRequest& r) {
+    return (*this)(r.is_all)(r.is_none)(r.set)(r.is_phase)(r.is_punched)(r.is_printed);
+  }
+  template <class Key, class T>
+  Content& operator()(const std::map<Key, T>& values) {
+    for (const auto& [key, value] : values) (*this)(key)(value);
+    return *this;
+  }
+  Content& operator()(const DynamicSelection& r) {
+    (*this)(r.dload)(r.loadset)(r.frequency)(r.tstep)(r.ic)(r.sdamping)(r.cmethod)(r.tfl)(r.ofreq)(r.random)(r.rcross);
+    (*this)(r.rgyro)(r.rmethod)(r.k2pp)(r.m2pp)(r.b2pp)(r.resvec)(r.effective_mass_grid);
+    return (*this)(r.outputs)(r.sets);
+  }
+  Content& operator()(const CaseCombination& r) {
+    (*this)(r.control.id)(r.control.title)(r.control.subtitle)(r.control.label)(r.command)(r.terms);
+    return (*this)(r.selection.outputs);
+  }
+  Content& operator()(const Sebulk& r) { return (*this)(r.id)(r.type)(r.reference)(r.is_auto)(r.tolerance)(r.unit); }
+  Content& operator()(const Seconct& r) { return (*this)(r.a)(r.b)(r.tolerance)(r.points); }
+  Content& operator()(const Seload& r) { return (*this)(r.set)(r.superelement)(r.load); }
+  Content& operator()(const ExteriorPoint& r) { return (*this)(r.id)(r.c); }
+  Content& operator()(const RecoveryItem& r) { return (*this)(r.type)(r.id)(r.num_rows)(r.first_row); }
+  Content& operator()(const RecoveryRows& r) { return (*this)(r.name)(r.items); }
 
   std::vector<double> numbers;
   std::string words;
@@ -212,7 +309,76 @@ void compare(const char* what, const std::vector<Record>& a, const std::vector<R
   }
 }
 
+/// One record, as the only one of a list.
+template <class Record>
+void compare_one(const char* what, const Record& a, const Record& b, double tolerance) {
+  compare(what, std::vector<Record>{a}, std::vector<Record>{b}, tolerance);
+}
+
+void compare_superelements(const SuperelementCards& a, const SuperelementCards& b, double tolerance) {
+  compare("sebulk", a.sebulk, b.sebulk, tolerance);
+  compare("seconct", a.seconct, b.seconct, tolerance);
+  compare("seload", a.seload, b.seload, tolerance);
+  compare("extrn", a.extrn, b.extrn, tolerance);
+  compare("rows", a.rows, b.rows, tolerance);
+  EXPECT_EQ(a.load_columns, b.load_columns);
+  ASSERT_EQ(a.input4.size(), b.input4.size());
+  for (const auto& [unit, file] : a.input4) {
+    ASSERT_EQ(b.input4.count(unit), 1u);
+    EXPECT_EQ(b.input4.at(unit).path, file.path);
+  }
+  ASSERT_EQ(a.output.has_value(), b.output.has_value());
+  if (a.output) EXPECT_EQ(std::pair(a.output->id, a.output->unit), std::pair(b.output->id, b.output->unit));
+  ASSERT_EQ(a.sections.size(), b.sections.size());
+  for (std::size_t i = 0; i < a.sections.size(); ++i) {
+    EXPECT_EQ(a.sections[i].id, b.sections[i].id);
+    expect_equal_decks(*a.sections[i].deck, *b.sections[i].deck, tolerance);
+  }
+}
+
 }  // namespace
+
+void expect_equal_dynamics(const WholeDeck& a, const WholeDeck& b, double tolerance) {
+  expect_equal_decks(a, b, tolerance);
+#define BOUGH_COMPARE(member) compare(#member, a.dynamics.member, b.dynamics.member, tolerance)
+  BOUGH_COMPARE(loads);
+  BOUGH_COMPARE(sums);
+  BOUGH_COMPARE(areas);
+  BOUGH_COMPARE(delays);
+  BOUGH_COMPARE(phases);
+  BOUGH_COMPARE(lseq);
+  BOUGH_COMPARE(initial);
+  BOUGH_COMPARE(tables);
+  BOUGH_COMPARE(damping);
+  BOUGH_COMPARE(frequencies);
+  BOUGH_COMPARE(steps);
+  BOUGH_COMPARE(spectral_terms);
+  BOUGH_COMPARE(spectra);
+  BOUGH_COMPARE(gust_spectra);
+  BOUGH_COMPARE(frequency_tables);
+  BOUGH_COMPARE(lags);
+  BOUGH_COMPARE(crosses);
+  BOUGH_COMPARE(residual_dofs);
+  BOUGH_COMPARE(complex_methods);
+  BOUGH_COMPARE(transfer_functions);
+  BOUGH_COMPARE(rotors.lines);
+  BOUGH_COMPARE(rotors.spins);
+  BOUGH_COMPARE(rotors.analyses);
+  BOUGH_COMPARE(rotors.speeds);
+  BOUGH_COMPARE(rotors.values);
+  BOUGH_COMPARE(rotors.sweeps);
+  BOUGH_COMPARE(rotors.unbalances);
+#undef BOUGH_COMPARE
+  EXPECT_EQ(a.dynamics.extra_points, b.dynamics.extra_points);
+  compare("combinations", a.combinations, b.combinations, tolerance);
+  if (!a.selections.empty()) {  // bulk data alone has none
+    ASSERT_EQ(a.selections.size(), b.selections.size());
+  }
+  for (const auto& [id, selection] : a.selections) {
+    ASSERT_EQ(b.selections.count(id), 1u) << id;
+    compare_one("selection", selection, b.selections.at(id), tolerance);
+  }
+}
 
 void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   EXPECT_EQ(a.sol, b.sol);
@@ -295,6 +461,12 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(special.pbend);
   BOUGH_COMPARE(special.cgap);
   BOUGH_COMPARE(special.pgap);
+  BOUGH_COMPARE(special.cfast);
+  BOUGH_COMPARE(special.pfast);
+  BOUGH_COMPARE(special.cweld);
+  BOUGH_COMPARE(special.pweld);
+  BOUGH_COMPARE(temperatures.materials);
+  BOUGH_COMPARE(temperatures.tables);
   BOUGH_COMPARE(special.nsm);
   BOUGH_COMPARE(special.nsmadd);
   BOUGH_COMPARE(special.rspline);
@@ -309,6 +481,20 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   }
   EXPECT_EQ(std::set<int>(a.scalar_points.begin(), a.scalar_points.end()),
             std::set<int>(b.scalar_points.begin(), b.scalar_points.end()));
+  compare_one("autospc_command", a.autospc_command, b.autospc_command, tolerance);
+  compare_superelements(a.super, b.super, tolerance);
+}
+
+std::vector<std::string> list_decks() {
+  std::vector<std::string> paths;
+  for (const auto& folder : {std::filesystem::path(BOUGH_SOURCE_DIR) / "data/examples",
+                             std::filesystem::path(BOUGH_SHARED_DIR) / "models"}) {
+    if (!std::filesystem::exists(folder)) continue;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+      if (entry.path().extension() == ".bdf" || entry.path().extension() == ".dat")
+        paths.push_back(entry.path().string());
+  }
+  return paths;
 }
 
 }  // namespace bough::nastran

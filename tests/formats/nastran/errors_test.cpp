@@ -94,7 +94,7 @@ TEST(Errors, ContradictionsThatAreWarnings) {
 }
 
 TEST(UnusedCards, WhatCarriesStiffnessMassConstraintIsAnError) {
-  const char* text = "GRID,1\nCQUADX,1,1,1,2,3,4\nCQUADX,2,1,1,2,3,4\nCONM3,1\nRSSCON,1\nCWELD,9\n";
+  const char* text = "GRID,1\nCQUADX,1,1,1,2,3,4\nCQUADX,2,1,1,2,3,4\nCONM3,1\nRSSCON,1\nCBUSH2D,9\n";
   const auto r = read(text);
   EXPECT_EQ(r.count("deck.unsupported-card"), 4) << r.get_messages();
   EXPECT_EQ(r.find("deck.unsupported-card")->where.line, 2);
@@ -106,7 +106,7 @@ TEST(UnusedCards, WhatCarriesStiffnessMassConstraintIsAnError) {
   EXPECT_EQ(r.deck.unused[1].effect, records::CardEffect::Mass);
   EXPECT_EQ(r.deck.unused[2].effect, records::CardEffect::Constraint);
   EXPECT_EQ(r.deck.unused[3].effect, records::CardEffect::Stiffness);
-  const auto ignored = read(text, {{"cquadx", "CONM3", "RSSCON", "CWELD"}});
+  const auto ignored = read(text, {{"cquadx", "CONM3", "RSSCON", "CBUSH2D"}});
   EXPECT_EQ(ignored.diagnostics.num_errors(), 0) << ignored.get_messages();
   EXPECT_EQ(ignored.count("deck.ignored-card"), 4);
   EXPECT_EQ(ignored.deck.unused.size(), 4u);

@@ -2,7 +2,6 @@
 #include "formats/nastran/writer.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <random>
 #include <set>
 #include <string_view>
@@ -14,12 +13,9 @@
 #include "tests/formats/nastran/compare_decks.hpp"
 #include "tests/formats/nastran/deck_text.hpp"
 #include "tests/formats/nastran/every_card.hpp"
-#include "tests/support/paths.hpp"
 
 namespace bough::nastran {
 namespace {
-
-namespace fs = std::filesystem;
 
 TEST(WrittenReals, KnownOnes) {
   EXPECT_EQ(detail::format_real(0, 8), "0.");
@@ -110,7 +106,7 @@ TEST(WrittenDecks, EveryCardThatIsRead) {
   const auto r = read(text);
   ASSERT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
   // A parser without a card here is not tested: add the card to every_card.hpp, or a CardSample in its test.
-  // Cards of external superelements need their files: superelements_test.cpp.
+  // Superelements have sections: dynamic_writer_test.cpp.
   const std::set<std::string_view> of_superelements{"SEBULK", "SECONCT", "SEBNDRY", "SELOAD", "EXTRN", "DTI"};
   for (const auto& [name, parser] : detail::get_card_parsers()) {
     if (of_superelements.contains(name)) continue;
@@ -146,19 +142,8 @@ TEST(WrittenDecks, NothingIsLostSilently) {
   EXPECT_EQ(diagnostics.num_errors(), 1);
 }
 
-std::vector<std::string> find_decks() {
-  std::vector<std::string> paths;
-  for (const auto& folder : {fs::path(BOUGH_SOURCE_DIR) / "data/examples", fs::path(BOUGH_SHARED_DIR) / "models"}) {
-    if (!fs::exists(folder)) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-      if (entry.path().extension() == ".bdf" || entry.path().extension() == ".dat")
-        paths.push_back(entry.path().string());
-  }
-  return paths;
-}
-
 TEST(WrittenDecks, OwnAndSharedModels) {
-  const auto paths = find_decks();
+  const auto paths = list_decks();
   ASSERT_GE(paths.size(), 4u);
   for (const auto& path : paths) {
     SCOPED_TRACE(path);

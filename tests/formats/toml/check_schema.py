@@ -15,7 +15,7 @@ import jsonschema
 
 KEYWORDS = {"$schema", "$id", "$ref", "$defs", "title", "description", "default", "type", "enum", "pattern", "properties",
             "required", "additionalProperties", "items", "minItems", "maxItems", "minimum", "exclusiveMinimum", "oneOf",
-            "anyOf", "allOf", "not"}
+            "anyOf", "allOf", "not", "dims"}
 
 
 def load(folder, kind):
@@ -70,7 +70,7 @@ def check_keywords(node, inside_properties=False):
         for key, value in node.items():
             if not inside_properties and key not in KEYWORDS:
                 faults.append(f"keyword {key} is not known to Bough")
-            if key not in ("default", "enum"):
+            if key not in ("default", "enum") and (inside_properties or key != "dims"):
                 faults += check_keywords(value, not inside_properties and key in ("properties", "$defs"))
             if inside_properties and "description" not in value and "$ref" not in value and not key.endswith("_deg"):
                 if key not in ("vector", "number_or_list", "node_id", "node"):

@@ -10,7 +10,7 @@ inside the element. The frame turns with R, the rotation nearest to the nodes an
 """
 import numpy as np
 
-from series import (cross, dot, inverse_spin_map, multiply, rotate, rotation_vector, skew, spin_map)
+from series import (cross, dot, inverse_spin_map, multiply, polar_rotation, rotate, rotation_vector, skew, spin_map)
 
 ROTATION_WEIGHT = 1e-3     # of the mean square distance of the nodes from their centre
 
@@ -37,14 +37,7 @@ class Elements:
     def find_frame(self, x, R_nodes):
         B = multiply("...ni,...nj->...ij", x, np.stack([np.broadcast_to(self.arms, x[0].shape)] + [0 * x[0]] * (len(x) - 1)))
         B += self.c[:, None, None] * R_nodes.sum(-3)
-        R = np.zeros_like(B)
-        R[0] = np.eye(3)
-        for _ in range(len(x) - 1):                      # one order more each time
-            H = multiply("...ji,...jk->...ik", R, B)
-            axis = np.stack([H[..., 2, 1] - H[..., 1, 2], H[..., 0, 2] - H[..., 2, 0], H[..., 1, 0] - H[..., 0, 1]], -1)
-            axis[0] = 0
-            R = multiply("...ij,...jk->...ik", R, rotate(np.einsum("eij,...ej->...ei", self.J, axis)))
-        return R, multiply("...ji,...jk->...ik", R, B)
+        return polar_rotation(B, lambda axis: np.einsum("eij,...ej->...ei", self.J, axis))
 
     def deform(self, u):
         """u: (order, ..., e, n, 6). Frame R, H = Rᵀ B, places x from the centre, deformations d (..., e, 6n)."""

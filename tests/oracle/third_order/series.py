@@ -84,3 +84,16 @@ def inverse_spin_map(theta):
     T = -0.5 * S + multiply("...,...ij->...ij", polynomial(INVERSE, t2), multiply("...ij,...jk->...ik", S, S))
     T[0] += np.eye(3)
     return T
+
+
+def polar_rotation(B, solve):
+    """R of the polar decomposition of a series B whose first term is symmetric, and H = Rᵀ B, which is symmetric.
+    solve: the rotation vector of an axial part of H, by the first term of B."""
+    R = np.zeros_like(B)
+    R[0] = np.eye(3)
+    for _ in range(len(B) - 1):                      # one order more each time
+        H = multiply("...ji,...jk->...ik", R, B)
+        axis = np.stack([H[..., 2, 1] - H[..., 1, 2], H[..., 0, 2] - H[..., 2, 0], H[..., 1, 0] - H[..., 0, 1]], -1)
+        axis[0] = 0
+        R = multiply("...ij,...jk->...ik", R, rotate(solve(axis)))
+    return R, multiply("...ji,...jk->...ik", R, B)

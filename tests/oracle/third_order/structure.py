@@ -3,7 +3,7 @@ import itertools
 
 import numpy as np
 
-from series import cross, inverse_spin_map, multiply, rotate, rotation_vector, spin_map
+from series import cross, inverse_spin_map, multiply, polar_rotation, rotate, rotation_vector, spin_map
 
 
 class Mean:
@@ -25,14 +25,7 @@ class Mean:
         u[0] += self.arms
         B = np.einsum("...ni,nj,n->...ij", u, self.arms, self.w)
         B += 0.5 * np.einsum("...nij,n->...ij", rotate(w[..., self.nodes, 3:]), self.w_r)
-        R = np.zeros_like(B)
-        R[0] = np.eye(3)
-        for _ in range(len(w) - 1):                      # one order more each time
-            H = multiply("...ji,...jk->...ik", R, B)
-            axis = np.stack([H[..., 2, 1] - H[..., 1, 2], H[..., 0, 2] - H[..., 2, 0], H[..., 1, 0] - H[..., 0, 1]], -1)
-            axis[0] = 0
-            R = multiply("...ij,...jk->...ik", R, rotate(np.einsum("ij,...j->...i", self.J, axis)))
-        return R, multiply("...ji,...jk->...ik", R, B)
+        return polar_rotation(B, lambda axis: np.einsum("ij,...j->...i", self.J, axis))
 
     def move(self, w):
         R, _ = self.find_rotation(w)
