@@ -177,6 +177,8 @@ class CurveTest(Edits):
         self.wait("studio.view.diagrams.drawn === studio.view.pane.text && [...studio.view.diagrams.editors.values()].every((e) => e.pending === 0 && e.chart.frame)")
         self.wait_for_check()
         self.browser.show(".curve-editor canvas.overlay")
+        # The answer of the check may have made the charts again, which are drawn when they are in view.
+        self.wait("[...studio.view.diagrams.editors.values()].every((e) => e.chart.frame)")
 
 
 class Curves(CurveTest):
