@@ -165,28 +165,13 @@ void check_nodes(const BodyRequest& request) {
 
 /// The number of frame_nodes is that of the frame; of a frame without nodes they would be ignored.
 void check_frame(const BodyRequest& request) {
-  struct Rule {
-    BodyFrame frame;
-    const char* name;
-    std::vector<std::size_t> counts;
-    const char* expected;
-  };
-  static const Rule kRules[] = {{BodyFrame::Fixed, "fixed", {0}, "none"},
-                                {BodyFrame::Free, "free", {0}, "none"},
-                                {BodyFrame::MeanAxes, "mean", {0}, "none"},
-                                {BodyFrame::Node, "node", {1}, "one"},
-                                {BodyFrame::ThreeNodes, "3-2-1", {3}, "three"},
-                                {BodyFrame::MassCentre, "mass-centre", {0, 1, 3}, "none, one or three"}};
+  const char* expected = modal::bases::find_expected_nodes(make_frame_spec(request.spec));
+  if (expected == nullptr) return;
   const auto count = request.spec.frame_nodes.size();
-  const auto* rule =
-      std::find_if(std::begin(kRules), std::end(kRules), [&](const Rule& r) { return r.frame == request.spec.frame; });
-  if (std::find(rule->counts.begin(), rule->counts.end(), count) != rule->counts.end()) return;
-  request.diagnostics.error("modal.bad-frame", request.where(count > 0 ? "frame_nodes" : "frame"),
-                            "frame = \"" + std::string(rule->name) + "\" has " + std::to_string(count) +
-                                " frame_nodes, expected " + rule->expected,
-                            rule->counts == std::vector<std::size_t>{0}
-                                ? "leave frame_nodes out, or set frame = \"node\" or \"3-2-1\""
-                                : "list them in frame_nodes");
+  request.diagnostics.error(
+      "modal.bad-frame", request.where(count > 0 ? "frame_nodes" : "frame"),
+      "the frame has " + std::to_string(count) + " frame_nodes, expected " + expected,
+      "give as many as the frame takes: one for node, three for 3-2-1, none for fixed, free, mean");
 }
 
 }  // namespace

@@ -51,13 +51,26 @@ MatrixXd calc_three_node_rows(const fe::Model& model, const std::vector<int>& id
 
 }  // namespace
 
+const char* find_expected_nodes(const FrameSpec& frame) {
+  const auto count = frame.nodes.size();
+  switch (frame.kind) {
+    case FrameKind::MeanAxes:
+      return count == 0 ? nullptr : "none";
+    case FrameKind::Node:
+      return count == 1 ? nullptr : "one";
+    case FrameKind::ThreeNodes:
+      return count == 3 ? nullptr : "three";
+    case FrameKind::MassCentre:
+      break;
+  }
+  return count == 0 || count == 1 || count == 3 ? nullptr : "none, one or three";
+}
+
 MatrixXd calc_reference_conditions(const fe::Model& model, const FrameSpec& frame) {
   const auto count = frame.nodes.size();
-  const auto demand = [&](bool is_right, const char* expected) {
-    if (!is_right)
-      throw_bad_frame(std::to_string(count) + " nodes given for the body frame, expected " + expected,
-                      "list them in frame_nodes");
-  };
+  if (const char* expected = find_expected_nodes(frame))
+    throw_bad_frame(std::to_string(count) + " nodes given for the body frame, expected " + expected,
+                    "give frame_nodes as the frame takes them");
   MatrixXd C = MatrixXd::Zero(6, model.num_gdofs());
   const auto calc_mean = [&] {
     const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
@@ -66,22 +79,18 @@ MatrixXd calc_reference_conditions(const fe::Model& model, const FrameSpec& fram
   };
   switch (frame.kind) {
     case FrameKind::MeanAxes:
-      demand(count == 0, "none");
       return calc_mean();
     case FrameKind::Node: {
-      demand(count == 1, "one");
       const auto& node = get_node(model, frame.nodes[0]);
       check_rotations(model, node);
       C.block<6, 6>(0, node.first_gdof).setIdentity();
       return C;
     }
     case FrameKind::ThreeNodes:
-      demand(count == 3, "three");
       return calc_three_node_rows(model, frame.nodes);
     case FrameKind::MassCentre:
       break;
   }
-  demand(count == 0 || count == 1 || count == 3, "none, one or three");
   C = calc_mean();
   if (count == 1) {
     const auto& node = get_node(model, frame.nodes[0]);

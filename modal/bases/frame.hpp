@@ -23,6 +23,9 @@ struct FrameSpec {
   std::vector<int> nodes;  ///< Node: one; ThreeNodes: three; MassCentre: none, one or three
 };
 
+/// Returns the number of nodes that the frame takes ("one"), if it has another one; nullptr: it has the right number.
+const char* find_expected_nodes(const FrameSpec& frame);
+
 /// C, 6 x num_gdofs: the frame follows the deformation u so that C u = 0, three rows for translation, three for
 /// rotation. Throws InputError("modal.bad-frame"): three nodes on a line, a node whose rotations no element holds, a
 /// wrong number of nodes.
