@@ -1,8 +1,8 @@
 #include "solver/builder/build.hpp"
-#include "solver/builder/levels.hpp"
 
 #include <algorithm>
 
+#include "solver/builder/levels.hpp"
 #include "solver/builder/signals.hpp"
 #include "solver/builder/special_node.hpp"
 #include "solver/motion/stiffening_terms.hpp"

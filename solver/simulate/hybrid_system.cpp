@@ -47,12 +47,12 @@ void HybridSystem::strike(double t, std::vector<Impact>& blows, Eigen::Ref<Vecto
   y[num_coordinates() + num_z_ + 1] += std::max(0.0, before - get_work(y));
 }
 
-void HybridSystem::set_variant(int variant) {
-  if (variant == system_->variant) return;
-  const DiscreteState present = get_discrete(*data_);
+std::unique_ptr<SystemData> HybridSystem::set_variant(int variant) {
+  auto before = std::move(data_);
   system_ = &start_.get_variant(variant);
   data_ = system_->make_data();
-  set_modes(*system_, *data_, present);
+  set_modes(*system_, *data_, get_discrete(*before));
+  return before;
 }
 
 std::string HybridSystem::switch_levels(double t, int variant, Eigen::Ref<VectorXd> y) {
@@ -72,11 +72,7 @@ std::string HybridSystem::switch_levels(double t, int variant, Eigen::Ref<Vector
   Vector6d momentum, momentum_after;
   take_stock(mass, energy, momentum);
   const System& before = *system_;
-  const auto data_before = std::move(data_);
-  const DiscreteState present = get_discrete(*data_before);
-  system_ = &start_.get_variant(variant);
-  data_ = system_->make_data();
-  set_modes(*system_, *data_, present);
+  const auto data_before = set_variant(variant);
   set_z(*data_, y.segment(num_coordinates(), num_z_));
   std::ostringstream text;
   for (const LevelMatch& match : match_levels(before, *data_before, *system_, *data_, t, q, u))
@@ -158,7 +154,9 @@ void HybridSystem::get_memory(VectorXd& memory) const {
 }
 
 void HybridSystem::set_memory(const VectorXd& memory) {
-  if (!system_->num_levels.empty()) set_variant(static_cast<int>(std::lround(memory[memory.size() - 1])));
+  if (!system_->num_levels.empty())
+    if (const auto variant = static_cast<int>(std::lround(memory[memory.size() - 1])); variant != system_->variant)
+      set_variant(variant);
   DiscreteState d = get_discrete(*data_);
   for (int row = 0; row < num_u_; ++row)
     d.mode[static_cast<size_t>(row)] = static_cast<HingeMode>(std::lround(memory[row]));

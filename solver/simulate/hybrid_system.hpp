@@ -74,7 +74,8 @@ class HybridSystem final : public Ode {
 
  private:
   std::string switch_levels(double t, int variant, Eigen::Ref<VectorXd> y);
-  void set_variant(int variant);
+  /// Takes the equations of a variant, coordinates and constraints in their modes; returns the data before.
+  std::unique_ptr<SystemData> set_variant(int variant);
   void calc_tangent();
   void add_stage_forces(double gamma_h, bool is_first);
 
