@@ -32,6 +32,7 @@ class Facets {
     for (const auto& shell : maker.deck().shells) {
       ShellFacet facet;
       facet.element = shell.id;
+      facet.property = shell.pid;
       if (!fill(facet, shell.grids, shell.midsides)) continue;
       facets_.push_back(std::move(facet));
       const auto& evaluated = maker.deck().temperatures.properties;
@@ -103,7 +104,11 @@ struct End {
 class ConnectorMaker {
  public:
   explicit ConnectorMaker(Maker& maker)
-      : maker_(maker), facets_(maker), pfast_(maker.deck().special.pfast), pweld_(maker.deck().special.pweld) {}
+      : maker_(maker),
+        facets_(maker),
+        pfast_(maker.deck().special.pfast),
+        pweld_(maker.deck().special.pweld),
+        pshell_(maker.deck().pshell) {}
 
   void make(const records::Cfast& card) {
     who_ = "CFAST " + std::to_string(card.id);
@@ -317,12 +322,9 @@ class ConnectorMaker {
     return R;
   }
 
-  double find_thickness(const End& end) {
-    for (const auto& shell : maker_.deck().shells)
-      if (shell.id == end.at.facet->element)
-        for (const auto& p : maker_.deck().pshell)
-          if (p.id == shell.pid && p.t) return *p.t;
-    return 0;
+  double find_thickness(const End& end) const {
+    const auto* property = pshell_.find(end.at.facet->property);
+    return property && property->t ? *property->t : 0;
   }
 
   /// ALIGN: the beam is between the grids themselves.
@@ -417,6 +419,7 @@ class ConnectorMaker {
   Facets facets_;
   RecordIndex<records::Pfast> pfast_;
   RecordIndex<records::Pweld> pweld_;
+  RecordIndex<records::Pshell> pshell_;
   std::string who_;
   records::CardLocation at_;
   std::optional<std::array<int, 2>> whole_;

@@ -11,6 +11,7 @@ namespace bough::fe {
 /// Surface of one shell: grids and their shape functions (surface_shape.hpp).
 struct ShellFacet {
   int element = 0;         ///< id; 0: given by grids
+  int property = 0;        ///< id, that of the copy at the element's temperature where there is one; 0: given by grids
   std::vector<int> nodes;  ///< indices, corners first
   int num_corners = 0;
   std::vector<char> has_midside;
