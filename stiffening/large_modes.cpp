@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "fe/model/model_size.hpp"
 #include "formats/records/third_order.hpp"
 
 namespace bough::stiffening {
@@ -16,13 +17,6 @@ constexpr double kSoft = 0.05;
 constexpr double kFollows = 2;
 
 }  // namespace
-
-double calc_model_size(const fe::Model& model) {
-  Eigen::AlignedBox3d box;
-  for (const auto& node : model.nodes())
-    if (node.num_dofs == 6) box.extend(node.x);
-  return box.isEmpty() ? 0 : box.diagonal().norm();
-}
 
 VectorXd calc_largest_ways(const fe::Model& model, const MatrixXd& Phi, double arm) {
   VectorXd ways = VectorXd::Zero(Phi.cols());
@@ -72,7 +66,7 @@ std::vector<int> find_named_large_modes(const BodyRequest& request, int num_mode
 std::vector<int> find_default_large_modes(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& gradient,
                                           std::vector<int> large, bool counts_rotations) {
   const auto n = static_cast<int>(Phi.cols());
-  const double size = calc_model_size(model);
+  const double size = fe::calc_model_size(model);
   const VectorXd ways = calc_largest_ways(model, Phi, counts_rotations ? kTurnedShare * size : 0);
   const double softest = ways.size() > 0 ? ways.maxCoeff() : 0;
   if (!(softest > 0)) return large;
@@ -111,7 +105,7 @@ std::vector<int> find_default_large_modes(const fe::Model& model, const MatrixXd
 
 MatrixXd calc_compliant_directions(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& K,
                                    const std::vector<int>& interface_nodes) {
-  const double arm = kTurnedShare * calc_model_size(model);
+  const double arm = kTurnedShare * fe::calc_model_size(model);
   const Eigen::Index n = Phi.cols();
   MatrixXd of_grids = MatrixXd::Zero(n, n), of_interface = of_grids;
   int num_grids = 0, num_interface = 0;

@@ -12,9 +12,6 @@ constexpr int kDefaultLargeModes = 6;
 /// Modes that [body.stiffening] large selects, from 0, ascending; empty: none. Throws reduce.bad-order.
 std::vector<int> find_named_large_modes(const BodyRequest& request, int num_modes);
 
-/// Diagonal of the box around the grids [L]; 0 without grids.
-double calc_model_size(const fe::Model& model);
-
 /// Largest translation of a grid in each mode, or rotation times `arm` [L] if that is more.
 VectorXd calc_largest_ways(const fe::Model& model, const MatrixXd& Phi, double arm = 0);
 

@@ -13,6 +13,7 @@
 #include "fe/linear/products.hpp"
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/model/element_loop.hpp"
+#include "fe/model/model_size.hpp"
 #include "stiffening/large_modes.hpp"
 
 namespace bough::stiffening {
@@ -353,7 +354,7 @@ MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const
 
 std::vector<int> StaticManifold::rank_by_compliance() const {
   const Index n = Phi_.cols();
-  const double size = calc_model_size(model_);
+  const double size = fe::calc_model_size(model_);
   VectorXd largest = VectorXd::Zero(n);
   for (const auto& node : model_.nodes()) {
     if (node.num_dofs != 6) continue;

@@ -6,6 +6,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/products.hpp"
+#include "fe/model/model_size.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "modal/canonical.hpp"
 #include "modal/tolerances.hpp"
@@ -90,14 +91,18 @@ VectorXd calc_lost_flexibility(const fe::Model& model, const MatrixXd& Y, const 
 }
 
 /// Returns per load whether the supports hold it whole (a moment on a motion without mass and strain, a load on the
-/// interface): the forces K X of its static solution are less than kHeldLoad of it, among forces, moments and loads of
-/// scalar points alike, whose sizes depend on the unit of length.
+/// interface): the forces K X of its static solution are less than kHeldLoad of it. A moment counts as a force at the
+/// size of the model, a load of scalar points by itself: the units do not matter.
 std::vector<bool> find_held_loads(const fe::Model& model, const MatrixXd& F, const MatrixXd& X) {
   const auto kinds = fe::list_row_kinds(model);
+  const double size = fe::calc_model_size(model), moment = size > 0 ? 1 / (size * size) : 1;
+  // Squares of the loads of grids, and of those of scalar points.
   const auto sum_squares = [&](const Eigen::Ref<const VectorXd>& loads) {
-    std::array<double, 3> sum{};
-    for (Eigen::Index i = 0; i < loads.size(); ++i)
-      sum[static_cast<std::size_t>(kinds[static_cast<std::size_t>(i)])] += loads[i] * loads[i];
+    std::array<double, 2> sum{};
+    for (Eigen::Index i = 0; i < loads.size(); ++i) {
+      const auto kind = kinds[static_cast<std::size_t>(i)];
+      sum[kind == linear::RowKind::Scalar] += (kind == linear::RowKind::Rotation ? moment : 1) * loads[i] * loads[i];
+    }
     return sum;
   };
   const MatrixXd given = model.T().transpose() * F;
@@ -105,20 +110,20 @@ std::vector<bool> find_held_loads(const fe::Model& model, const MatrixXd& F, con
   std::vector<bool> is_held;
   for (Eigen::Index c = 0; c < F.cols(); ++c) {
     const auto whole = sum_squares(given.col(c)), part = sum_squares(carried.col(c));
-    bool is_whole = true;
-    for (std::size_t k = 0; k < whole.size(); ++k)
-      is_whole = is_whole && part[k] <= detail::kHeldLoad * detail::kHeldLoad * whole[k];
-    is_held.push_back(is_whole);
+    const auto is_small = [&](std::size_t k) {
+      return whole[k] == 0 || part[k] <= detail::kHeldLoad * detail::kHeldLoad * whole[k];
+    };
+    is_held.push_back(is_small(0) && is_small(1));
   }
   return is_held;
 }
 
 /// M-norms at which a static solution X of F is round-off: a frequency 1e11 times the lowest of all, or one of a load
 /// that the support holds. Such a vector, of unit mass, would be anything: a twist of any size, which has no mass.
+/// \param held  find_held_loads
 VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const MatrixXd& F, const MatrixXd& X,
-                          const VectorXd& norm) {
+                          const VectorXd& norm, const std::vector<bool>& held) {
   const VectorXd flexibility = F.cwiseProduct(X).colwise().sum();
-  const auto held = find_held_loads(model, F, X);
   double longest = 0;  // 1/ω²
   if (kept.cols() > 0) {
     const double lambda = kept.col(0).dot(VectorXd(fe::calc_stiffness_times(model, kept.col(0))));
@@ -164,7 +169,8 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
   if (rigid.cols() > 0) X -= rigid * (rigid.transpose() * times_M(X));
   const MatrixXd X_static = X;
   const VectorXd before = X.cwiseProduct(times_M(X)).colwise().sum().cwiseMax(0).cwiseSqrt();
-  const VectorXd min_norm = calc_least_norms(model, kept, F_e, X, before);
+  const auto is_held = find_held_loads(model, F_e, X);
+  const VectorXd min_norm = calc_least_norms(model, kept, F_e, X, before, is_held);
 
   MatrixXd Q(F.rows(), rigid.cols() + kept.cols());
   Q << rigid, kept;
@@ -212,7 +218,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
     std::vector<int> held = balanced;
     for (std::size_t i = 0; i < result.unused.size(); ++i) {
       const double part = lost(static_cast<Eigen::Index>(i));
-      if (part > kLost)
+      if (part > kLost && !is_held[static_cast<std::size_t>(result.unused[i])])
         result.massless.emplace_back(result.unused[i], part);
       else
         held.push_back(result.unused[i]);

@@ -63,6 +63,26 @@ class TestUnits(ProgramTest):
         for size, hz in found.items():
             np.testing.assert_allclose(hz, found[1], rtol=1e-5, err_msg=str(size))
 
+    def test_loads_that_the_interface_holds_have_no_residual_vectors(self):
+        """Interface grids on RBE3 of a line of bars: Craig-Bampton holds their loads, whatever the round-off."""
+        for size in (1e-6, 1e-3, 1, 1e3):
+            grids = "".join(f"GRID,{i + 1},,{.15 * i * size:.9e},0.,0.\n" for i in range(7))
+            bars = "".join(f"CBAR,{i},1,{i},{i + 1},.1,.2,1.\n" for i in range(1, 7))
+            self.write("p.bdf", "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nPARAM,COUPMASS,1\nMAT1,1,7.+10,,.3,2700.\nSPC1,1,123456,1\n"
+                       f"PBAR,1,1,{2e-4 * size**2:.6e},{3e-9 * size**4:.6e},{5e-9 * size**4:.6e},{4e-9 * size**4:.6e}\n{grids}{bars}"
+                       f"GRID,60,,{.3 * size:.6e},{.1 * size:.6e},{.05 * size:.6e}\nRBE3,501,,60,123456,1.,123456,2,3\n,4\n"
+                       f"GRID,61,,{.45 * size:.6e},{.2 * size:.6e},{-.05 * size:.6e}\nRBE3,502,,61,123456,1.,123456,4,5\nENDDATA\n")
+            found = []
+            for residual in ("", 'residual = ["interface"]\n'):
+                self.write("b.toml", '[body]\nname = "b"\ndeck = "p.bdf"\nframe = "fixed"\ninterface = [60, 61]\n'
+                           f'[body.modes]\nbasis = "craig-bampton"\nnumber = 3\n{residual}')
+                messages = self.bough("reduce", "b.toml", "-o", "b.h5").stderr
+                self.assertNotIn("residual-massless", messages)
+                self.assertIn("turning of grid 61 about (1 0 0)", messages)
+                with h5py.File(self.path("b.h5")) as f:
+                    found.append(size * f["modes/frequency_hz"][:])
+            np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
+
     def test_a_loose_panel_is_loose_in_every_size(self):
         for size in (1e-9, 1e-4, 1, 1e8):
             self.write("p.bdf", write_panel(size).replace("SPC1,1,123456,1,5,9,13", "SPC1,1,1346,1,5,9,13"))
