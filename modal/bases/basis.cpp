@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <numeric>
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/products.hpp"
+#include "fe/model/model_size.hpp"
 #include "modal/canonical.hpp"
+#include "modal/null_motions.hpp"
 #include "modal/pencil.hpp"
 #include "modal/tolerances.hpp"
 
@@ -154,13 +157,16 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
 /// Describes the motion of the interface in each of the directions X of Craig-Bampton coordinates: "turning of grid 31
 /// about (0.33 0.67 0.67)".
 std::string describe_directions(const fe::Model& model, const Basis& basis, const MatrixXd& X) {
-  std::string text;
+  constexpr double kRoundoff = 1e-9;
+  const double size = std::max(fe::calc_model_size(model), std::numeric_limits<double>::min());
+  std::vector<std::string> found;
   for (Eigen::Index c = 0; c < X.cols(); ++c) {
-    std::map<std::pair<int, bool>, Vector3d> parts;  // by grid and whether it turns
+    std::map<std::pair<int, bool>, Vector3d> parts;  // by grid and whether it turns; translations in sizes of the model
     for (std::size_t b = 0; b < basis.boundary.size(); ++b) {
       const auto [id, component] = basis.boundary[b];
       auto& part = parts.try_emplace({id, component > 3}, Vector3d::Zero()).first->second;
-      part += X(static_cast<Eigen::Index>(b), c) * model.node(model.find_node(id)).R_basic_cd.col((component - 1) % 3);
+      part += X(static_cast<Eigen::Index>(b), c) / (component > 3 ? 1 : size) *
+              model.node(model.find_node(id)).R_basic_cd.col((component - 1) % 3);
     }
     const auto largest = std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
       return a.second.squaredNorm() < b.second.squaredNorm();
@@ -170,11 +176,16 @@ std::string describe_directions(const fe::Model& model, const Basis& basis, cons
     Eigen::Index first = 0;
     axis.cwiseAbs().maxCoeff(&first);
     if (axis(first) < 0) axis = -axis;
+    axis = (axis.array().abs() > kRoundoff).select(axis, 0.0);
     char numbers[80];
     std::snprintf(numbers, sizeof numbers, " (%.3g %.3g %.3g)", axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
-    text += (text.empty() ? "" : ", ") + std::string(largest->first.second ? "turning of grid " : "motion of grid ") +
-            std::to_string(largest->first.first) + (largest->first.second ? " about" : " along") + numbers;
+    const std::string direction = std::string(largest->first.second ? "turning of grid " : "motion of grid ") +
+                                  std::to_string(largest->first.first) + (largest->first.second ? " about" : " along") +
+                                  numbers;
+    if (std::find(found.begin(), found.end(), direction) == found.end()) found.push_back(direction);
   }
+  std::string text;
+  for (const auto& direction : found) text += (text.empty() ? "" : ", ") + direction;
   return text;
 }
 
@@ -258,7 +269,10 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   MatrixXd rigid(model.num_gdofs(), 0);
   if (options.is_free) {
     const detail::Pencil pencil(system);
-    const auto motions = detail::find_rigid_motions(pencil);
+    auto motions = detail::find_rigid_motions(pencil);
+    // AUTOSPC may hold a rotation of a pinned grid: then the motions are not those of one rigid body, but are there.
+    constexpr Eigen::Index kNumRigid = 6;
+    if (motions.modes.cols() + motions.massless.cols() < kNumRigid) motions = detail::find_null_motions(pencil);
     rigid = model.T() * motions.modes;
     basis.num_rigid = static_cast<int>(motions.modes.cols());
     basis.num_massless = static_cast<int>(motions.massless.cols());

@@ -2,6 +2,9 @@
 import json
 import unittest
 
+import h5py
+import numpy as np
+
 from support import ProgramTest
 from decks import begin, grids
 
@@ -77,6 +80,20 @@ class ShellAtHinges(ProgramTest):
         self.assertIn("node10 6 (100 %), node18 6 (100 %)", printed)
         self.write("plate-run.toml", self.read("plate-run.toml").replace("duration = 1.0", "duration = 0.05"))
         self.bough("run", "plate-run.toml")
+
+    def test_a_free_body_with_a_pinned_mass(self):
+        """AUTOSPC holds rotations of the pinned end: Craig-Bampton finds the six motions as normal modes do."""
+        line = grids(*((.15 * i, 0, 0) for i in range(7))) + "".join(f"CBAR,{i},1,{i},{i + 1},.1,.2,1.\n" for i in range(1, 7))
+        self.write("d.bdf", begin(103) + "PARAM,COUPMASS,1\nMAT1,1,7.+10,,.3,2700.\nPBAR,1,1,2.-4,3.-9,5.-9,4.-9\n" + line
+                   + "GRID,80,,.45,0.,.2\nCBAR,800,1,4,80,1.,.1,0.\n,,45\nCONM2,801,80,,.2\n,1.-4,,1.-4,,,1.-4\n"
+                   "CONM2,900,7,,.5\n,1.-4,,2.-4,,,3.-4\nENDDATA\n")
+        found = []
+        for modes in ('basis = "normal"\nnumber = 5', 'basis = "craig-bampton"\nnumber = 25'):
+            self.write("b.toml", f'[body]\nname = "b"\ndeck = "d.bdf"\nframe = "free"\ninterface = [1]\n[body.modes]\n{modes}\n')
+            self.bough("reduce", "b.toml", "-o", "b.h5")
+            with h5py.File(self.path("b.h5")) as f:
+                found.append(f["modes/frequency_hz"][:5])
+        np.testing.assert_allclose(found[1], found[0], rtol=2e-4)
 
 
 if __name__ == "__main__":
