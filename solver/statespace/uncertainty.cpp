@@ -67,6 +67,18 @@ MatrixXd make_rows(const LinearModel& m, const MatrixXd& Ca) {
   return R;
 }
 
+/// Largest terms that each row of R sums: an output that feels an acceleration nearly cancels in y - Ca δü.
+VectorXd calc_row_sizes(const LinearModel& m, const MatrixXd& Ca) {
+  const Sizes s(m);
+  const MatrixXd a = get_accelerations(m).cwiseAbs();
+  VectorXd size = make_rows(m, Ca).cwiseAbs().rowwise().maxCoeff();
+  if (s.n == 0) return size;
+  auto forces = size.segment(s.n, s.n), outputs = size.tail(s.ny);
+  forces = forces.cwiseMax((m.mass.cwiseAbs() * a).rowwise().maxCoeff());
+  if (s.ny > 0) outputs = outputs.cwiseMax((Ca.cwiseAbs() * a).rowwise().maxCoeff());
+  return size;
+}
+
 /// \param models  all that were compared: where one of them accelerates, M A_u has -(∂M/∂q) u̇, u̇ = M⁻¹ f.
 [[noreturn]] void refuse(const std::string& what, const std::vector<const LinearModel*>& models,
                          const SourceLocation& at) {
@@ -128,8 +140,8 @@ LinearModel make_uncertain_model(const LinearModel& nominal, const std::vector<P
   others.push_back(&together);
   const MatrixXd Ca = find_acceleration_outputs(nominal, others);
   const MatrixXd R0 = make_rows(nominal, Ca);
-  VectorXd row_size = R0.cwiseAbs().rowwise().maxCoeff();
-  for (const auto* other : others) row_size = row_size.cwiseMax(make_rows(*other, Ca).cwiseAbs().rowwise().maxCoeff());
+  VectorXd row_size = calc_row_sizes(nominal, Ca);
+  for (const auto* other : others) row_size = row_size.cwiseMax(calc_row_sizes(*other, Ca));
   row_size = (row_size.array() > 0).select(row_size, 1);
   const double noise = std::max(1e-11, error), tolerance = 100 * noise, allowed = 1e-6;
   const auto is_zero = [&](const MatrixXd& R) {
