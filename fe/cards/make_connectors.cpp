@@ -24,6 +24,7 @@ constexpr double kEqualAxes = 1e-6;   ///< difference of components of a unit ve
 constexpr double kShearFactor = 0.9;  ///< of a round section (PWELD)
 
 using FacetList = std::vector<const ShellFacet*>;
+using PatchEnds = std::array<PatchEnd, 2>;
 
 /// Shells of the deck as facets, by element, property and grid.
 class Facets {
@@ -162,11 +163,11 @@ class ConnectorMaker {
       if (!is_found) return;
     }
     if (!place(ends, card.gs, card.ga, card.gb, card.xs)) return;
-    std::optional<std::array<PointMotion, 2>> motion;
+    std::optional<PatchEnds> motion;
     if (card.format == "ELPAT" || card.format == "PARTPAT")
       motion = fit_ends(ends, property->d);
     else
-      motion = {calc_facet_motion(ends[0].at), calc_facet_motion(ends[1].at)};
+      motion = {follow_facet(ends[0].at), follow_facet(ends[1].at)};
     if (!motion) return;
     double length = (ends[1].at.x - ends[0].at.x).norm();
     add_beam(card, *property, *material, *motion, ends[0].at.x, ends[1].at.x,
@@ -264,9 +265,9 @@ class ConnectorMaker {
   }
 
   /// Motion of both ends by the squares of the area of the section around them.
-  std::optional<std::array<PointMotion, 2>> fit_ends(const std::array<End, 2>& ends, double diameter) {
+  std::optional<PatchEnds> fit_ends(const std::array<End, 2>& ends, double diameter) {
     const Vector3d chord = ends[1].at.x - ends[0].at.x;
-    std::array<PointMotion, 2> motion;
+    PatchEnds motion;
     for (std::size_t k = 0; k < 2; ++k) {
       const auto& end = ends[k];
       const Vector3d axis = chord.norm() > kNoLength * diameter ? Vector3d(chord.normalized()) : end.at.normal;
@@ -290,7 +291,7 @@ class ConnectorMaker {
         report_projection(end, "the square of its section");
         return std::nullopt;
       }
-      motion[k] = fit_motion(points, end.at.x);
+      motion[k] = fit_points(points, end.at.x);
     }
     return motion;
   }
@@ -336,16 +337,14 @@ class ConnectorMaker {
       maker_.error("fe.zero-length", at_, who_ + " has its grids at the same place", "correct the grids");
       return;
     }
-    std::array<PointMotion, 2> motion;
-    // Grids whose rotations take part too: the blocks of add() have translations, these six columns.
     whole_ = {a, b};
-    add_beam(card, property, material, motion, x_a, x_b, (x_b - x_a).normalized(), 0);
+    add_beam(card, property, material, {}, x_a, x_b, (x_b - x_a).normalized(), 0);
     whole_.reset();
   }
 
   /// \param e1  along the beam. \param spot_length  SPOT: length of the stiffness; 0: by LDMIN and LDMAX.
   void add_beam(const records::Cweld& card, const records::Pweld& property, const records::Mat1& material,
-                const std::array<PointMotion, 2>& motion, const Vector3d& x_a, const Vector3d& x_b, const Vector3d& e1,
+                const PatchEnds& motion, const Vector3d& x_a, const Vector3d& x_b, const Vector3d& e1,
                 double spot_length) {
     const double d = property.d, length = (x_b - x_a).norm(), area = std::numbers::pi * d * d / 4,
                  inertia = std::numbers::pi * std::pow(d, 4) / 64;
@@ -385,15 +384,12 @@ class ConnectorMaker {
     add(card.id, "CWELD", motion, material.rho * area * length, std::move(core), material.ge);
   }
 
-  void add(int id, const char* card, const std::array<PointMotion, 2>& motion, double mass,
-           std::unique_ptr<const Element> core, double ge) {
+  void add(int id, const char* card, const PatchEnds& motion, double mass, std::unique_ptr<const Element> core,
+           double ge) {
     std::map<int, Eigen::Index> slots;
-    if (whole_) {
-      slots[(*whole_)[0]] = 0;
-      slots[(*whole_)[1]] = 1;
-    }
+    if (whole_) slots = {{(*whole_)[0], 0}, {(*whole_)[1], 1}};
     for (const auto& end : motion)
-      for (const auto& [node, block] : end) slots.try_emplace(node, static_cast<Eigen::Index>(slots.size()));
+      for (const auto& [node, shares] : end.shares) slots.try_emplace(node, static_cast<Eigen::Index>(slots.size()));
     std::vector<int> nodes(slots.size());
     for (const auto& [node, slot] : slots) nodes[static_cast<std::size_t>(slot)] = node;
     ConnectorData data;
@@ -404,11 +400,19 @@ class ConnectorMaker {
       data.G.setIdentity();
       data.weights.setIdentity();
     }
-    for (int k = 0; k < 2; ++k)
-      for (const auto& [node, block] : motion[static_cast<std::size_t>(k)]) {
-        data.G.block<6, 3>(6 * k, 6 * slots.at(node)) = block;
-        data.weights(k, slots.at(node)) = block.topRows<3>().trace() / 3;
+    for (int k = 0; k < 2 && !whole_; ++k) {
+      const PatchEnd& end = motion[static_cast<std::size_t>(k)];
+      auto& [shares, rotation] = data.ends.emplace_back();
+      shares = MatrixXd::Zero(4, static_cast<Eigen::Index>(nodes.size()));
+      rotation = end.rotation;
+      for (const auto& [node, of_points] : end.shares) {
+        const Eigen::Index slot = slots.at(node);
+        shares.col(slot) = of_points;
+        auto block = data.G.block<6, 3>(6 * k, 6 * slot);
+        for (Eigen::Index p = 0; p < 4; ++p) block += of_points[p] * end.motion.middleCols<3>(3 * p);
+        data.weights(k, slot) = block.topRows<3>().trace() / 3;
       }
+    }
     auto gdofs = maker_.list_gdofs(nodes);
     maker_.add(
         std::make_unique<Connector>(id, card, std::move(nodes), std::move(gdofs), std::move(data), std::move(core)),
@@ -422,7 +426,7 @@ class ConnectorMaker {
   RecordIndex<records::Pshell> pshell_;
   std::string who_;
   records::CardLocation at_;
-  std::optional<std::array<int, 2>> whole_;
+  std::optional<std::array<int, 2>> whole_;  ///< ends that are grids, with their rotations
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "base/rotation.hpp"
+#include "fe/corotational/mean_motion.hpp"
 #include "fe/shape/surface_shape.hpp"
 
 namespace bough::fe {
@@ -43,6 +43,26 @@ std::optional<FacetPoint> project_on(const ShellFacet& facet, const Vector3d& p)
   return at;
 }
 
+/// Motion of an end at `at` by points at `places`, as the mean of an RBE3 has it.
+void fit(const Eigen::Matrix<double, 3, 4>& places, const Vector3d& at, PatchEnd& end) {
+  WeightedMean mean;
+  mean.centre = places.rowwise().mean();
+  for (Eigen::Index k = 0; k < 4; ++k) mean.members.push_back({0, places.col(k) - mean.centre, 1, 0});
+  const MeanMotion at_rest(mean, Matrix3Xd::Zero(3, 4), {});
+  const Vector3d arm = at - mean.centre;
+  const auto pick = [](Eigen::Index row) { return 6 * (row / 3) + row % 3; };  // translations of the members
+  const MatrixXd A = at_rest.calc_tangent(arm);
+  for (Eigen::Index j = 0; j < 12; ++j) end.motion.col(j) = A.col(pick(j));
+  end.rotation.arm = arm;
+  for (int c = 0; c < 3; ++c) {
+    const MatrixXd slope = at_rest.calc_slope(Vector3d::Zero(), Vector3d::Zero(), Vector3d::Unit(c));
+    // A moment on the rotation vector in place of one fixed in space: the slope is symmetric.
+    auto& form = end.rotation.forms[static_cast<std::size_t>(c)];
+    for (Eigen::Index i = 0; i < 12; ++i)
+      for (Eigen::Index j = 0; j < 12; ++j) form(i, j) = 0.5 * (slope(pick(i), pick(j)) + slope(pick(j), pick(i)));
+  }
+}
+
 }  // namespace
 
 std::optional<FacetPoint> project(const std::vector<const ShellFacet*>& facets, const Vector3d& p) {
@@ -55,7 +75,7 @@ std::optional<FacetPoint> project(const std::vector<const ShellFacet*>& facets, 
   return nearest;
 }
 
-PointMotion calc_facet_motion(const FacetPoint& at) {
+PatchEnd follow_facet(const FacetPoint& at) {
   const auto& facet = *at.facet;
   const auto shapes = calc_shapes(facet, at.r, at.s);
   const Eigen::Matrix<double, 3, 2> tangents = facet.x * shapes.dall.transpose();
@@ -63,44 +83,31 @@ PointMotion calc_facet_motion(const FacetPoint& at) {
   Eigen::Matrix2d J;  // derivatives of the coordinates along t1 and t2 by r and s
   J << tangents.col(0).dot(t1), tangents.col(0).dot(t2), tangents.col(1).dot(t1), tangents.col(1).dot(t2);
   const Eigen::Matrix2Xd along = J.inverse() * shapes.dall;
-  PointMotion motion;
+  const double h = facet.radius;
+  PatchEnd end;
   for (Eigen::Index i = 0; i < shapes.all.size(); ++i) {
-    Eigen::Matrix<double, 6, 3> block;
-    block.topRows<3>() = shapes.all[i] * Matrix3d::Identity();
-    block.bottomRows<3>() = t1 * (along(1, i) * n.transpose()) - t2 * (along(0, i) * n.transpose()) +
-                            0.5 * n * (along(0, i) * t2.transpose() - along(1, i) * t1.transpose());
-    motion[facet.nodes[static_cast<std::size_t>(i)]] = block;
+    const double N = shapes.all[i], by_1 = h * along(0, i), by_2 = h * along(1, i);
+    end.shares[facet.nodes[static_cast<std::size_t>(i)]] = {N + by_1, N + by_2, N - by_1, N - by_2};
   }
-  return motion;
+  Eigen::Matrix<double, 3, 4> places;
+  places << h * t1, h * t2, -h * t1, -h * t2;
+  fit(places, Vector3d::Zero(), end);
+  return end;
 }
 
-PointMotion fit_motion(const std::vector<FacetPoint>& points, const Vector3d& at) {
-  using Map = Eigen::Matrix<double, 3, 6>;
-  // Rotations by a length, so that the normal matrix has one dimension.
-  double size = 0;
-  for (const auto& p : points) size = std::max(size, (p.x - at).norm());
-  Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
-  std::vector<Map> maps;
-  for (const auto& p : points) {
-    Map map;
-    map << Matrix3d::Identity(), -skew(Vector3d((p.x - at) / size));
-    maps.push_back(map);
-    sum += map.transpose() * map;
+PatchEnd fit_points(const std::vector<FacetPoint>& points, const Vector3d& at) {
+  PatchEnd end;
+  Eigen::Matrix<double, 3, 4> places;
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    const FacetPoint& point = points[static_cast<std::size_t>(k)];
+    places.col(k) = point.x;
+    const auto shapes = calc_shapes(*point.facet, point.r, point.s);
+    for (Eigen::Index i = 0; i < shapes.all.size(); ++i)
+      end.shares.try_emplace(point.facet->nodes[static_cast<std::size_t>(i)], Eigen::Vector4d::Zero())
+          .first->second[k] += shapes.all[i];
   }
-  Eigen::Matrix<double, 6, 6> fit = sum.inverse();
-  fit.bottomRows<3>() /= size;
-  PointMotion motion;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const auto& facet = *points[k].facet;
-    const auto shapes = calc_shapes(facet, points[k].r, points[k].s);
-    const Eigen::Matrix<double, 6, 3> of_point = fit * maps[k].transpose();
-    for (Eigen::Index i = 0; i < shapes.all.size(); ++i) {
-      const auto slot =
-          motion.try_emplace(facet.nodes[static_cast<std::size_t>(i)], Eigen::Matrix<double, 6, 3>::Zero());
-      slot.first->second += shapes.all[i] * of_point;
-    }
-  }
-  return motion;
+  fit(places, at, end);
+  return end;
 }
 
 }  // namespace bough::fe

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "fe/elements/element.hpp"
+#include "fe/elements/connector.hpp"
 
 namespace bough::fe {
 
@@ -32,13 +32,18 @@ struct FacetPoint {
 /// Nearest point of the facets at which the line to `p` is normal to the surface; nothing outside of all of them.
 std::optional<FacetPoint> project(const std::vector<const ShellFacet*>& facets, const Vector3d& p);
 
-/// Motion of a point by nodes: 6 x 3 for the translations of each, basic axes.
-using PointMotion = std::map<int, Eigen::Matrix<double, 6, 3>>;
-/// Translations by the shape functions, rotations by their gradients: θ = ½ curl u with the normal of the surface
-/// straight (Kirchhoff). Exact for rigid-body motion.
-PointMotion calc_facet_motion(const FacetPoint& at);
-/// Best fit (RBE3 with equal weights) of the translations of four points of the patch; about `at`. Exact for rigid-body
-/// motion.
-PointMotion fit_motion(const std::vector<FacetPoint>& points, const Vector3d& at);
+/// End of a connector that follows four points as the reference grid of an RBE3 with equal weights follows its grids.
+/// The points move by the translations of nodes, linearly at any amplitude. Basic axes.
+struct PatchEnd {
+  std::map<int, Eigen::Vector4d> shares;  ///< of each node in the four points; over all nodes they add up to 1
+  Eigen::Matrix<double, 6, 12> motion;    ///< translations and rotation by the translations of the points
+  PatchRotation rotation;
+};
+
+/// The point, its rotations by the gradients of the translations: θ = ½ curl u with the normal of the surface straight
+/// (Kirchhoff). That is the fit of four points on its tangents. Exact for rigid-body motion.
+PatchEnd follow_facet(const FacetPoint& at);
+/// Best fit of four points of the patch, about `at`. Exact for rigid-body motion.
+PatchEnd fit_points(const std::vector<FacetPoint>& points, const Vector3d& at);
 
 }  // namespace bough::fe

@@ -1,4 +1,4 @@
-"""CFAST and CWELD: RBE3 with CBUSH or CBAR, affine fields, two coupons in tension, rigid-body modes."""
+"""CFAST and CWELD: RBE3 with CBUSH or CBAR, affine fields, two coupons in tension, rigid-body modes, buckling."""
 import math
 import unittest
 
@@ -231,6 +231,47 @@ class Connectors(ProgramTest):
                 group = f["subcases"][list(f["subcases"])[0]]
                 v = group["displacement"][()].reshape(-1, 6)
             np.testing.assert_allclose(v[:, :3], factor * u[:, :3], rtol=0, atol=1e-7 * np.abs(v[:, :3]).max())
+
+    def buckle(self, bulk):
+        """Lowest load factor of a rigid plate on one connector."""
+        grids = [100 + k for k in range(25)], [200 + k for k in range(25)]
+        x, y = CENTRE
+        rigid = f"GRID,800,,{real(x)},{real(y)},{real(GAP)}\nRBE2,801,800,123456," + ",".join(map(str, grids[1][:5])) + "\n"
+        for k in range(5, 25, 8):
+            rigid += "," + ",".join(map(str, grids[1][k:k + 8])) + "\n"
+        case = ("SPC = 1", "SUBCASE 1", "LOAD = 5", "SUBCASE 2", "METHOD = 1")
+        self.write("d.bdf", make(105, case, "EIGRL,1,,,2\nSPC1,1,123456,100,THRU,124\n" + rigid + bulk))
+        self.bough("modes", "d.bdf", "--buckling", "-o", "d.h5")
+        with h5py.File(self.path("d.h5")) as f:
+            return f["buckling/load_factor"][()]
+
+    def test_rigid_plate_on_a_fastener_buckles(self):
+        """A couple of forces M on a plate whose hinge has k_x and k_z: ½ k θ² + ½ M θ_x θ_z, M = 2 √(k_x k_z)."""
+        loads = "FORCE,5,200,0,1.,0.,0.,1.+5\nFORCE,5,204,0,1.,0.,0.,-1.+5\n"  # 4e4 about y
+        fast = f"GRID,900,,{real(CENTRE[0])},{real(CENTRE[1])},.5\nSPC1,1,123456,900\nCFAST,50,50,PROP,1,2,900\n" \
+            "PFAST,50,.03,0,0,1.+9,1.+9,2.+9,1.+5\n,1.+9,4.+5\n"
+        factors = self.buckle(fast + loads)
+        self.assertAlmostEqual(min(abs(factors)), 2 * math.sqrt(1e5 * 4e5) / 4e4, delta=1e-6)
+
+    def test_buckling_as_between_grids(self):
+        """CFAST as CBUSH, CWELD as CBAR between a fixed grid and the grid of the rigid plate, under any loads."""
+        x, y, d = *CENTRE, .004
+        place = f"GRID,900,,{real(x)},{real(y)},.5\nSPC1,1,123456,900\n"
+        ground = f"GRID,802,,{real(x)},{real(y)},0.\nSPC1,1,123456,802\nCORD2R,7,,0.,0.,0.,1.,0.,0.\n,0.,0.,1.\n"
+        area, inertia = math.pi * d**2 / 4, math.pi * d**4 / 64
+        bar = f"CBAR,50,50,802,800,1.,0.,0.\nPBAR,50,9,{real(area)},{real(inertia)},{real(inertia)},{real(2 * inertia)}\n,\n,.9,.9\n"
+        bush = "CBUSH,50,50,802,800,,,,7\nPBUSH,50,K,1.+7,2.+7,1.+7,4.+3,3.+3,2.+3\n"
+        fast = place + "CFAST,50,50,PROP,1,2,900\nPFAST,50,.03,7,0,1.+7,2.+7,1.+7,4.+3\n,3.+3,2.+3\n"
+        weld = f"PWELD,50,9,{real(d)}\n,.1,50.\n"
+        cases = [(bush, [fast + "CORD2R,7,,0.,0.,0.,1.,0.,0.\n,0.,0.,1.\n"]),
+                 (bar, [place + "CWELD,50,50,900,PARTPAT\n,1,2\n" + weld, place + "CWELD,50,50,900,ELEMID\n,105,205\n" + weld])]
+        for load in ((1, 0, 0), (.3, -.2, -1), (0, 0, -1)):
+            loads = f"MAT1,9,7.+10,,.3\nFORCE,5,200,0,300.,{','.join(map(real, load))}\nFORCE,5,218,0,200.,-.2,.3,.1\n"
+            for grids, connectors in cases:
+                expected = self.buckle(ground + grids + loads)
+                for connector in connectors:
+                    with self.subTest(connector, load=load):
+                        np.testing.assert_allclose(self.buckle(connector + loads), expected, rtol=1e-8)
 
     def test_rejected_input(self):
         pfast, place = PFAST.format(d=".03", mass=""), "GRID,900,,.15,.17,.5\n"
