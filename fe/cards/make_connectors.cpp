@@ -402,7 +402,8 @@ class ConnectorMaker {
     }
     for (int k = 0; k < 2 && !whole_; ++k) {
       const PatchEnd& end = motion[static_cast<std::size_t>(k)];
-      auto& [shares, rotation] = data.ends.emplace_back();
+      auto& [x, shares, rotation] = data.ends.emplace_back();
+      x = end.x;
       shares = MatrixXd::Zero(4, static_cast<Eigen::Index>(nodes.size()));
       rotation = end.rotation;
       for (const auto& [node, of_points] : end.shares) {

@@ -54,6 +54,7 @@ void fit(const Eigen::Matrix<double, 3, 4>& places, const Vector3d& at, PatchEnd
   const MatrixXd A = at_rest.calc_tangent(arm);
   for (Eigen::Index j = 0; j < 12; ++j) end.motion.col(j) = A.col(pick(j));
   end.rotation.arm = arm;
+  end.rotation.points = places.colwise() - mean.centre;
   for (int c = 0; c < 3; ++c) {
     const MatrixXd slope = at_rest.calc_slope(Vector3d::Zero(), Vector3d::Zero(), Vector3d::Unit(c));
     // A moment on the rotation vector in place of one fixed in space: the slope is symmetric.
@@ -92,6 +93,7 @@ PatchEnd follow_facet(const FacetPoint& at) {
   Eigen::Matrix<double, 3, 4> places;
   places << h * t1, h * t2, -h * t1, -h * t2;
   fit(places, Vector3d::Zero(), end);
+  end.x = at.x;
   return end;
 }
 
@@ -107,6 +109,7 @@ PatchEnd fit_points(const std::vector<FacetPoint>& points, const Vector3d& at) {
           .first->second[k] += shapes.all[i];
   }
   fit(places, at, end);
+  end.x = at;
   return end;
 }
 

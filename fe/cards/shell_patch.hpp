@@ -35,6 +35,7 @@ std::optional<FacetPoint> project(const std::vector<const ShellFacet*>& facets, 
 /// End of a connector that follows four points as the reference grid of an RBE3 with equal weights follows its grids.
 /// The points move by the translations of nodes, linearly at any amplitude. Basic axes.
 struct PatchEnd {
+  Vector3d x = Vector3d::Zero();          ///< place
   std::map<int, Eigen::Vector4d> shares;  ///< of each node in the four points; over all nodes they add up to 1
   Eigen::Matrix<double, 6, 12> motion;    ///< translations and rotation by the translations of the points
   PatchRotation rotation;

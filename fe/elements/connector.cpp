@@ -44,7 +44,8 @@ void Connector::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force,
   K_G.noalias() += data_.G.transpose() * K_c * data_.G;
   const VectorXd on_ends = scale * (end_forces_ * force);
   for (std::size_t k = 0; k < data_.ends.size(); ++k) {
-    const auto& [shares, rotation] = data_.ends[k];
+    const auto& shares = data_.ends[k].shares;
+    const auto& rotation = data_.ends[k].rotation;
     const auto first = 6 * static_cast<Eigen::Index>(k);
     const Vector3d f = on_ends.segment<3>(first);
     const Vector3d moment = on_ends.segment<3>(first + 3) + rotation.arm.cross(f);

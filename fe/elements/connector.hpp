@@ -11,13 +11,15 @@ namespace bough::fe {
 /// Second order of an end that follows four points p (12 translations) by the rotation R of best fit: place x̄ + R arm,
 /// rotation vector θ + θ₂, θ₂_c = ½ pᵀ forms[c] p. Basic.
 struct PatchRotation {
-  Vector3d arm = Vector3d::Zero();  ///< of the end, from the centre x̄ of the points
+  Vector3d arm = Vector3d::Zero();     ///< of the end, from the centre x̄ of the points
+  Eigen::Matrix<double, 3, 4> points;  ///< from their centre
   std::array<Eigen::Matrix<double, 12, 12>, 3> forms;
 };
 
 /// An end of a connector on shells.
 struct ConnectorEnd {
-  MatrixXd shares;  ///< 4 x nodes: of the grids in the points
+  Vector3d x = Vector3d::Zero();  ///< place, basic
+  MatrixXd shares;                ///< 4 x nodes: of the grids in the points
   PatchRotation rotation;
 };
 
@@ -40,6 +42,10 @@ class Connector final : public Element, public StressState {
   Connector(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, ConnectorData data,
             std::unique_ptr<const Element> core);
 
+  /// Ends and their motion by the grids.
+  const ConnectorData& data() const { return data_; }
+  /// Springs or beam between the ends: two nodes, 12 DOFs.
+  const Element& core() const { return *core_; }
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
   const StressState* stress_state() const override { return this; }

@@ -273,6 +273,22 @@ class Connectors(ProgramTest):
                     with self.subTest(connector, load=load):
                         np.testing.assert_allclose(self.buckle(connector + loads), expected, rtol=1e-8)
 
+    def test_large_displacements(self):
+        """A soft fastener whose plates turn against each other, as CBUSH between RBE3, which follow finite means."""
+        loads = "FORCE,5,204,0,60.,1.,.3,.2\nFORCE,5,224,0,50.,.4,-.2,1.\n"
+        bush = self.make_joint("CBUSH,50,50,901,902,,,,0\nPBUSH,50,K,3.+5,2.+5,1.+5,40.,30.,20.\n")
+        fast = f"GRID,900,,{real(CENTRE[0])},{real(CENTRE[1])},.5\nSPC1,1,123456,900\nCFAST,50,50,PROP,1,2,900\n" \
+            f"PFAST,50,{real(DIAMETER)},0,0,3.+5,2.+5,1.+5,40.\n,30.,20.\n"
+        u = []
+        for cards in (bush, fast):
+            self.write("d.bdf", make(101, ("SPC = 1", "LOAD = 5"), CLAMP + loads + cards))
+            self.bough("static", "d.bdf", "--nonlinear", "-o", "d.h5")
+            with h5py.File(self.path("d.h5")) as f:
+                u.append(f["subcases"][list(f["subcases"])[0]]["displacement"][()].reshape(-1, 6)[:50])
+        turn = np.linalg.norm(u[0][25:, 3:], axis=1).mean() - np.linalg.norm(u[0][:25, 3:], axis=1).mean()
+        self.assertGreater(turn, .3)
+        np.testing.assert_allclose(u[1], u[0], rtol=0, atol=1e-8 * np.abs(u[0]).max())
+
     def test_rejected_input(self):
         pfast, place = PFAST.format(d=".03", mass=""), "GRID,900,,.15,.17,.5\n"
         weld = "PWELD,50,9,.02\nMAT1,9,2.+9,,.3\n"
