@@ -496,6 +496,7 @@ struct Selections {
 std::optional<response::FrequencyTables> choose_tables(const fe::Model& model, const records::DynamicDeck& deck,
                                                        const std::optional<rotors::RotorCase>& rotor_case, double g,
                                                        Diagnostics& diagnostics) {
+  if (rotor_case) response::report_part_tables(deck, diagnostics);
   response::FrequencyTables tables(model, deck, g, diagnostics);
   if (tables.is_empty()) return std::nullopt;
   const auto at = deck.locate(deck.dynamics.frequency_tables.front().at);

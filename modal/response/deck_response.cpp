@@ -240,6 +240,7 @@ AddedStiffness join_terms(const std::shared_ptr<const RotorResponse>& rotors,
 /// Tables of PELAST, PDAMPT and PBUSHT; nullptr without, and over time, where the values of the properties count.
 std::shared_ptr<const FrequencyTables> make_tables(const fe::Model& model, const records::DynamicDeck& deck,
                                                    const ResponseOptions& options, double g, Diagnostics& diagnostics) {
+  if (!options.is_over_time) report_part_tables(deck, diagnostics);
   auto tables = std::make_shared<FrequencyTables>(model, deck, g, diagnostics);
   diagnostics.throw_if_errors();
   if (tables->is_empty()) return nullptr;

@@ -53,6 +53,16 @@ double look_up(const records::DynamicTable* table, double value, double x) {
 
 }  // namespace
 
+void report_part_tables(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
+  for (const auto& section : deck.super.sections)
+    for (const char* card : {"PELAST", "PDAMPT", "PBUSHT"})
+      if (section.deck->card_counts.count(card) > 0)
+        diagnostics.error("modal.part-tables", deck.locate(section.at),
+                          std::string(card) + " of superelement " + std::to_string(section.id) +
+                              " cannot act: the section is condensed once, with the values of the properties",
+                          "move the elements with tables and their properties into the main bulk data");
+}
+
 FrequencyTables::FrequencyTables(const fe::Model& model, const records::DynamicDeck& deck, double g,
                                  Diagnostics& diagnostics)
     : g_(g), directions_(model.num_gdofs(), 0) {

@@ -202,6 +202,40 @@ class MaterialTemperatures(ProgramTest):
         u, v = before[name].reshape(13, 6), after[name].reshape(13, 6)
         np.testing.assert_allclose(v[:, :3], 1e3 * u[:, :3], rtol=0, atol=1e-9 * np.abs(v).max())
 
+    def test_sections_of_superelements(self):
+        """A cantilever in a section: F L³ / (3 E(T) I) by the set of the section, in all cases or by its subcase."""
+        F, L, inertia = 90.0, 2.0, 3e-7
+        deck = "\n".join(["SOL 101", "CEND", "SPC = 1", "LOAD = 5", "{case}", "BEGIN BULK", "GRID,1,,0.,0.,0.", "GRID,3,,2.,0.,0.",
+                          "SPC1,1,123456,1", f"FORCE,5,3,0,{F},0.,1.,0.", "{main}BEGIN SUPER = 1", "GRID,1,,0.,0.,0.",
+                          "GRID,2,,1.,0.,0.", "GRID,3,,2.,0.,0.", "CBAR,1,5,1,2,0.,1.,0.", "CBAR,2,5,2,3,0.,1.,0.",
+                          "PBAR,5,1,1.-3,3.-7,2.-7,4.-7", "MAT1,1,7.+10,,.3", "{section}ENDDATA", ""])
+        tables = "MATT1,1,31\nTABLEM1,31\n,0.,8.+10,100.,6.+10,ENDT\n"
+        for case, section, modulus in [
+                ("TEMPERATURE(MATERIAL) = 6", tables + "TEMPD,6,90.\n", 6.2e10),
+                ("TEMPERATURE(INITIAL) = 6", tables + "TEMPD,6,90.\n", 6.2e10),
+                ("TEMPERATURE(MATERIAL) = 6", tables + "TEMP,6,1,80.,2,80.\nTEMP,6,3,80.\n", 6.4e10),
+                ("TEMPERATURE(MATERIAL) = 6", "TEMPD,6,90.\n", 7e10)]:
+            found = self.static(deck.format(case=case, main="", section=section))
+            name = next(n for n in found if "displacement" in n)
+            v = found[name].reshape(-1, 6)[-1, 1]
+            self.assertAlmostEqual(v / (F * L**3 / (3 * modulus * inertia)), 1, places=9)
+        self.write("d.bdf", deck.format(case="TEMPERATURE(MATERIAL) = 6", main="TEMPD,6,90.\n", section=tables))
+        self.fails(1, "static", "d.bdf", error="fe.part-temperature", says=["superelement 1", "temperature set 6", "its section"])
+        self.write("d.bdf", deck.format(case="TITLE = none", main="", section=tables))
+        self.assertIn("fe.material-tables-unused", self.bough("static", "d.bdf").stderr)
+
+    def test_tables_over_frequency_in_sections(self):
+        """A section is condensed once: a spring with a table in it is an error of responses, and no matter of statics."""
+        deck = "\n".join(["SOL 108", "CEND", "SPC = 1", "LOAD = 5", "DLOAD = 4", "FREQ = 5", "BEGIN BULK", "GRID,1,,0.,0.,0.,,23456",
+                          "GRID,2,,1.,0.,0.,,23456", "SPC1,1,1,1", "CONM2,9,2,,1.", "DAREA,3,2,1,1.", "RLOAD1,4,3,,,1.", "FREQ,5,2.",
+                          "FORCE,5,2,0,1.,1.,0.,0.", "BEGIN SUPER = 1", "GRID,1,,0.,0.,0.,,23456", "GRID,2,,1.,0.,0.,,23456",
+                          "CELAS1,1,1,1,1,2,1", "PELAS,1,1.+4", "PELAST,1,7", "TABLED1,7", ",0.,9.+3,9.,2.+4,ENDT", "ENDDATA", ""])
+        self.write("d.bdf", deck)
+        self.fails(1, "frequency", "d.bdf", error="modal.part-tables", says=["PELAST of superelement 1", "main bulk data"])
+        found = self.static(deck.replace("SOL 108", "SOL 101").replace("DLOAD = 4\nFREQ = 5\n", ""))
+        name = next(n for n in found if "displacement" in n)
+        self.assertAlmostEqual(found[name].reshape(-1, 6)[1, 0], 1e-4, places=12)
+
     def test_rejected_input(self):
         tables = write_materials(NOMINAL) + TABLES
         case = "LOAD = 5\nTEMPERATURE(MATERIAL) = 6"
