@@ -30,6 +30,7 @@ class Evaluator {
         diagnostics_(diagnostics) {
     for (const auto& t : deck.temperatures.materials) tables_[t.mid] = &t;
     for (const auto& t : deck.temperatures.tables) curves_[t.id] = &t;
+    for (const auto& t : deck.temperatures.materials) check_material(t);
     const auto raise = [this](const auto& records) {
       for (const auto& r : records) next_ = std::max(next_, r.id);
     };
@@ -72,6 +73,29 @@ class Evaluator {
   }
 
  private:
+  /// Reports a MATTi without its MATi.
+  void check_material(const records::MaterialTables& t) {
+    const auto& d = source_;
+    const auto has = [&](const auto& records) {
+      return std::any_of(records.begin(), records.end(), [&](const auto& r) { return r.id == t.mid; });
+    };
+    const std::pair<const char*, bool> kinds[] = {
+        {"MAT1", has(d.mat1)}, {"MAT2", has(d.mat2)}, {"MAT8", has(d.mat8)}, {"MAT9", has(d.mat9)}};
+    std::string other;
+    for (const auto& [name, is_found] : kinds) {
+      if (is_found && t.material == name) return;
+      if (is_found) other = name;
+    }
+    if (d.is_refused(t.mid, {t.material})) return;
+    const std::string number = t.material.substr(3), id = std::to_string(t.mid);
+    diagnostics_.error(
+        "fe.missing-material", source_.locate(t.at),
+        "MATT" + number + " " + id + " refers to " + t.material + " " + id +
+            (other.empty() ? ", which the deck does not define" : ", but material " + id + " is a " + other),
+        other.empty() ? "add the " + t.material + " or correct the id"
+                      : "write MATT" + other.substr(3) + " with its fields, or correct the id");
+  }
+
   static std::vector<int> join(std::vector<int> corners, const std::vector<int>& midsides) {
     std::copy_if(midsides.begin(), midsides.end(), std::back_inserter(corners), [](int g) { return g != 0; });
     return corners;
@@ -162,7 +186,7 @@ class Evaluator {
     if (name == "MAT2") is_found = add_mat2(*tables->second, copy->second, T);
     if (name == "MAT8") is_found = add_mat8(*tables->second, copy->second, T);
     if (name == "MAT9") is_found = add_mat9(*tables->second, copy->second, T);
-    if (!is_found) copy->second = mid;  // of another kind: the maker of the element reports it
+    if (!is_found) copy->second = mid;  // check_material() has reported it
     return copy->second;
   }
 

@@ -11,8 +11,8 @@ namespace bough::fe {
 ///
 /// \return the deck with materials and properties for each temperature, to which the elements refer; nullptr if no
 ///   material of the deck has a table or no set is selected. Elements keep their ids and order.
-/// Reports fe.missing-load (no card in the set), fe.missing-temperature, fe.missing-material-table,
-/// fe.material-tables-unused (warning).
+/// Reports fe.missing-load (no card in the set), fe.missing-temperature, fe.missing-material-table, fe.missing-material
+/// (a MATTi whose MATi the deck has not), fe.material-tables-unused (warning).
 std::unique_ptr<const records::Deck> evaluate_materials(const records::Deck& deck, const records::Subcase& subcase,
                                                         Diagnostics& diagnostics);
 
