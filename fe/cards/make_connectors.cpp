@@ -3,8 +3,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <set>
-#include <unordered_map>
 
 #include "base/number_text.hpp"
 #include "fe/cards/maker.hpp"
@@ -19,81 +17,10 @@ namespace {
 constexpr int kMaxShrinks = 4;        ///< halvings of the square of a connector at the rim of its patch
 constexpr double kNoLength = 1e-6;    ///< of the diameter: ends that coincide
 constexpr double kMaxAngleDeg = 20;   ///< between the shells (GSPROJ of SWLDPRM)
-constexpr double kContinues = 0.7;    ///< cosine between the normals of a shell and of one that continues it
 constexpr double kEqualAxes = 1e-6;   ///< difference of components of a unit vector
 constexpr double kShearFactor = 0.9;  ///< of a round section (PWELD)
 
-using FacetList = std::vector<const ShellFacet*>;
 using PatchEnds = std::array<PatchEnd, 2>;
-
-/// Shells of the deck as facets, by element, property and grid.
-class Facets {
- public:
-  explicit Facets(Maker& maker) : maker_(maker) {
-    for (const auto& shell : maker.deck().shells) {
-      ShellFacet facet;
-      facet.element = shell.id;
-      facet.property = shell.pid;
-      if (!fill(facet, shell.grids, shell.midsides)) continue;
-      facets_.push_back(std::move(facet));
-      const auto& evaluated = maker.deck().temperatures.properties;
-      const auto of_deck = evaluated.find(shell.pid);
-      properties_.push_back(of_deck == evaluated.end() ? shell.pid : of_deck->second);
-    }
-    for (std::size_t i = 0; i < facets_.size(); ++i) {
-      const auto* facet = &facets_[i];
-      by_element_[facet->element] = facet;
-      by_property_[properties_[i]].push_back(facet);
-      for (int k = 0; k < facet->num_corners; ++k) by_node_[facet->nodes[static_cast<std::size_t>(k)]].push_back(facet);
-    }
-  }
-
-  /// Facet with these corners and midside grids (0: none); false without its grids.
-  bool fill(ShellFacet& facet, const std::vector<int>& corners, const std::vector<int>& midsides) const {
-    facet.num_corners = static_cast<int>(corners.size());
-    for (const int g : corners) facet.nodes.push_back(maker_.nodes().find_node(g));
-    for (const int g : midsides) {
-      facet.has_midside.push_back(g > 0);
-      if (g > 0) facet.nodes.push_back(maker_.nodes().find_node(g));
-    }
-    facet.x.resize(3, static_cast<Eigen::Index>(facet.nodes.size()));
-    for (std::size_t i = 0; i < facet.nodes.size(); ++i) {
-      if (facet.nodes[i] < 0 || maker_.nodes().node(facet.nodes[i]).num_dofs != 6) return false;
-      facet.x.col(static_cast<Eigen::Index>(i)) = maker_.nodes().node(facet.nodes[i]).x;
-    }
-    facet.centre = facet.x.leftCols(facet.num_corners).rowwise().mean();
-    const auto side = [&](int a, int b) { return Vector3d(facet.x.col(b) - facet.x.col(a)); };
-    facet.normal = side(0, 2).cross(facet.num_corners == 4 ? side(1, 3) : side(0, 1)).normalized();
-    facet.radius = (facet.x.colwise() - facet.centre).colwise().norm().maxCoeff();
-    return true;
-  }
-
-  const ShellFacet* find_element(int id) const {
-    const auto found = by_element_.find(id);
-    return found == by_element_.end() ? nullptr : found->second;
-  }
-  FacetList list_property(int pid) const {
-    const auto found = by_property_.find(pid);
-    return found == by_property_.end() ? FacetList{} : found->second;
-  }
-  /// The shell and those that share a grid with it and continue it: no webs across it.
-  FacetList list_around(const ShellFacet& facet) const {
-    std::set<int> seen{facet.element};
-    FacetList list{&facet};
-    for (int k = 0; k < facet.num_corners; ++k)
-      for (const auto* other : by_node_.at(facet.nodes[static_cast<std::size_t>(k)]))
-        if (seen.insert(other->element).second && std::abs(other->normal.dot(facet.normal)) > kContinues)
-          list.push_back(other);
-    return list;
-  }
-
- private:
-  Maker& maker_;
-  std::vector<ShellFacet> facets_;
-  std::vector<int> properties_;
-  std::unordered_map<int, const ShellFacet*> by_element_;
-  std::unordered_map<int, FacetList> by_property_, by_node_;
-};
 
 /// One end: the shells on which it is, and its point.
 struct End {
@@ -106,7 +33,7 @@ class ConnectorMaker {
  public:
   explicit ConnectorMaker(Maker& maker)
       : maker_(maker),
-        facets_(maker),
+        facets_(maker.deck(), maker.nodes()),
         pfast_(maker.deck().special.pfast),
         pweld_(maker.deck().special.pweld),
         pshell_(maker.deck().pshell) {}
@@ -421,7 +348,7 @@ class ConnectorMaker {
   }
 
   Maker& maker_;
-  Facets facets_;
+  ShellFacets facets_;
   RecordIndex<records::Pfast> pfast_;
   RecordIndex<records::Pweld> pweld_;
   RecordIndex<records::Pshell> pshell_;

@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "fe/cards/shell_patch.hpp"
 #include "fe/cards/temperature_set.hpp"
 #include "formats/records/selection.hpp"
 
@@ -22,9 +23,10 @@ using records::Deck;
 /// Elements of one material or property at one temperature share its copy.
 class Evaluator {
  public:
-  Evaluator(const Deck& deck, int set, Diagnostics& diagnostics)
+  Evaluator(const Deck& deck, int set, const NodeTable& nodes, Diagnostics& diagnostics)
       : source_(deck),
         deck_(std::make_unique<Deck>(deck)),
+        nodes_(nodes),
         temperatures_(deck.temperatures, set),
         set_(set),
         diagnostics_(diagnostics) {
@@ -60,12 +62,9 @@ class Evaluator {
     for (auto& e : d.shear_panels)
       move(e, TemperatureKind::Plate, {e.grids.begin(), e.grids.end()}, "CSHEAR", d.pshear);
     for (auto& e : d.solids) move(e, TemperatureKind::Grids, join(e.corners, e.midsides), e.card.c_str(), d.psolid);
-    for (auto& e : d.special.cweld) {
-      std::vector<int> grids;
-      for (const int g : {e.gs, e.ga, e.gb})
-        if (g > 0) grids.push_back(g);
-      move(e, TemperatureKind::Grids, grids, "CWELD", d.special.pweld);
-    }
+    for (auto& e : d.special.cweld)
+      if (needs_temperature(e, d.special.pweld))
+        move(e, TemperatureKind::Grids, list_weld_grids(e), "CWELD", d.special.pweld);
     if (num_missing_ > 1 && first_missing_)
       first_missing_->what += " (and " + std::to_string(num_missing_ - 1) + " elements more)";
     if (first_missing_) diagnostics_.add(*first_missing_);
@@ -94,6 +93,41 @@ class Evaluator {
             (other.empty() ? ", which the deck does not define" : ", but material " + id + " is a " + other),
         other.empty() ? "add the " + t.material + " or correct the id"
                       : "write MATT" + other.substr(3) + " with its fields, or correct the id");
+  }
+
+  template <class Properties>
+  bool needs_temperature(const records::Cweld& weld, const Properties& properties) {
+    const auto found = find_record(properties, weld.pid);
+    return found && tables_.count(properties[*found].mid) > 0;
+  }
+
+  /// Grids of the two shells on which a weld ends; of ALIGN and GRIDID its own. Without a place on the shells none: the
+  /// maker of the element reports it.
+  std::vector<int> list_weld_grids(const records::Cweld& weld) {
+    if (weld.format == "ALIGN") return {weld.ga, weld.gb};
+    if (weld.format == "GRIDID") {
+      auto grids = weld.grids_a;
+      grids.insert(grids.end(), weld.grids_b.begin(), weld.grids_b.end());
+      return grids;
+    }
+    if (!facets_) facets_ = std::make_unique<ShellFacets>(*deck_, nodes_);
+    std::vector<int> grids;
+    for (const auto& [id, own] : {std::pair(weld.ida, weld.ga), std::pair(weld.idb, weld.gb)}) {
+      const int place = own > 0 ? own : weld.gs > 0 ? weld.gs : weld.ga;
+      const int node = place > 0 ? nodes_.find_node(place) : -1;
+      const auto* named = facets_->find_element(id);
+      FacetList patch;
+      if (weld.format == "PARTPAT")
+        patch = facets_->list_property(id);
+      else if (named)
+        patch = weld.format == "ELPAT" ? facets_->list_around(*named) : FacetList{named};
+      const auto at = project(patch, node >= 0 ? nodes_.node(node).x : weld.xs);
+      if (at)
+        for (const int k : at->facet->nodes) grids.push_back(nodes_.node(k).id);
+      else if (!patch.empty())
+        for (const int k : patch.front()->nodes) grids.push_back(nodes_.node(k).id);
+    }
+    return grids;
   }
 
   static std::vector<int> join(std::vector<int> corners, const std::vector<int>& midsides) {
@@ -295,6 +329,8 @@ class Evaluator {
 
   const Deck& source_;
   std::unique_ptr<Deck> deck_;
+  const NodeTable& nodes_;
+  std::unique_ptr<ShellFacets> facets_;
   const TemperatureSet temperatures_;
   int set_ = 0, next_ = 0;
   Diagnostics& diagnostics_;
@@ -311,7 +347,7 @@ class Evaluator {
 }  // namespace
 
 std::unique_ptr<const Deck> evaluate_materials(const Deck& deck, const records::Subcase& subcase,
-                                               Diagnostics& diagnostics) {
+                                               const NodeTable& nodes, Diagnostics& diagnostics) {
   const auto& tables = deck.temperatures.materials;
   if (tables.empty()) return nullptr;
   const bool by_initial = subcase.material_temperature == 0;
@@ -330,7 +366,7 @@ std::unique_ptr<const Deck> evaluate_materials(const Deck& deck, const records::
                       std::string("correct ") + command + " or add its cards");
     return nullptr;
   }
-  return Evaluator(deck, set, diagnostics).evaluate();
+  return Evaluator(deck, set, nodes, diagnostics).evaluate();
 }
 
 }  // namespace bough::fe

@@ -1,5 +1,8 @@
 #include "fe/cards/shell_patch.hpp"
 
+#include <cmath>
+#include <set>
+
 #include <Eigen/LU>
 
 #include "fe/corotational/mean_motion.hpp"
@@ -11,6 +14,8 @@ namespace {
 /// Beyond a side by this share of it a point counts as inside: neighbours leave no gap.
 constexpr double kInside = 1e-6;
 constexpr int kMaxIterations = 50;
+/// Cosine between the normals of a shell and of one that continues it.
+constexpr double kContinues = 0.7;
 
 SurfaceShapes calc_shapes(const ShellFacet& facet, double r, double s) {
   return calc_surface_shapes(facet.num_corners, facet.has_midside, r, s);
@@ -66,7 +71,66 @@ void fit(const Eigen::Matrix<double, 3, 4>& places, const Vector3d& at, PatchEnd
 
 }  // namespace
 
-std::optional<FacetPoint> project(const std::vector<const ShellFacet*>& facets, const Vector3d& p) {
+ShellFacets::ShellFacets(const records::Deck& deck, const NodeTable& nodes) : nodes_(nodes) {
+  std::vector<int> properties;
+  for (const auto& shell : deck.shells) {
+    ShellFacet facet;
+    facet.element = shell.id;
+    facet.property = shell.pid;
+    if (!fill(facet, shell.grids, shell.midsides)) continue;
+    facets_.push_back(std::move(facet));
+    const auto& evaluated = deck.temperatures.properties;
+    const auto of_deck = evaluated.find(shell.pid);
+    properties.push_back(of_deck == evaluated.end() ? shell.pid : of_deck->second);
+  }
+  for (std::size_t i = 0; i < facets_.size(); ++i) {
+    const auto* facet = &facets_[i];
+    by_element_[facet->element] = facet;
+    by_property_[properties[i]].push_back(facet);
+    for (int k = 0; k < facet->num_corners; ++k) by_node_[facet->nodes[static_cast<std::size_t>(k)]].push_back(facet);
+  }
+}
+
+bool ShellFacets::fill(ShellFacet& facet, const std::vector<int>& corners, const std::vector<int>& midsides) const {
+  facet.num_corners = static_cast<int>(corners.size());
+  for (const int g : corners) facet.nodes.push_back(nodes_.find_node(g));
+  for (const int g : midsides) {
+    facet.has_midside.push_back(g > 0);
+    if (g > 0) facet.nodes.push_back(nodes_.find_node(g));
+  }
+  facet.x.resize(3, static_cast<Eigen::Index>(facet.nodes.size()));
+  for (std::size_t i = 0; i < facet.nodes.size(); ++i) {
+    if (facet.nodes[i] < 0 || nodes_.node(facet.nodes[i]).num_dofs != 6) return false;
+    facet.x.col(static_cast<Eigen::Index>(i)) = nodes_.node(facet.nodes[i]).x;
+  }
+  facet.centre = facet.x.leftCols(facet.num_corners).rowwise().mean();
+  const auto side = [&](int a, int b) { return Vector3d(facet.x.col(b) - facet.x.col(a)); };
+  facet.normal = side(0, 2).cross(facet.num_corners == 4 ? side(1, 3) : side(0, 1)).normalized();
+  facet.radius = (facet.x.colwise() - facet.centre).colwise().norm().maxCoeff();
+  return true;
+}
+
+const ShellFacet* ShellFacets::find_element(int id) const {
+  const auto found = by_element_.find(id);
+  return found == by_element_.end() ? nullptr : found->second;
+}
+
+FacetList ShellFacets::list_property(int pid) const {
+  const auto found = by_property_.find(pid);
+  return found == by_property_.end() ? FacetList{} : found->second;
+}
+
+FacetList ShellFacets::list_around(const ShellFacet& facet) const {
+  std::set<int> seen{facet.element};
+  FacetList list{&facet};
+  for (int k = 0; k < facet.num_corners; ++k)
+    for (const auto* other : by_node_.at(facet.nodes[static_cast<std::size_t>(k)]))
+      if (seen.insert(other->element).second && std::abs(other->normal.dot(facet.normal)) > kContinues)
+        list.push_back(other);
+  return list;
+}
+
+std::optional<FacetPoint> project(const FacetList& facets, const Vector3d& p) {
   std::optional<FacetPoint> nearest;
   for (const auto* facet : facets) {
     if (nearest && (p - facet->centre).norm() - facet->radius > nearest->distance) continue;

@@ -2,6 +2,7 @@
 /// \file Patches of shells on which connectors end: projection of points, motion of points by the grids.
 #include <map>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "fe/elements/connector.hpp"
@@ -21,6 +22,31 @@ struct ShellFacet {
   double radius = 0;  ///< around the centre of the corners
 };
 
+using FacetList = std::vector<const ShellFacet*>;
+
+/// Shells of a deck as facets, by element, property and grid.
+class ShellFacets {
+ public:
+  ShellFacets(const records::Deck& deck, const NodeTable& nodes);
+  ShellFacets(const ShellFacets&) = delete;
+  ShellFacets& operator=(const ShellFacets&) = delete;
+
+  /// Facet with these corners and midside grids (0: none); false without its grids.
+  bool fill(ShellFacet& facet, const std::vector<int>& corners, const std::vector<int>& midsides) const;
+  /// The facet of a shell, or nullptr.
+  const ShellFacet* find_element(int id) const;
+  /// Facets of a property of the deck, copies at temperatures included.
+  FacetList list_property(int pid) const;
+  /// The shell and those that share a grid with it and continue it: no webs across it.
+  FacetList list_around(const ShellFacet& facet) const;
+
+ private:
+  const NodeTable& nodes_;
+  std::vector<ShellFacet> facets_;
+  std::unordered_map<int, const ShellFacet*> by_element_;
+  std::unordered_map<int, FacetList> by_property_, by_node_;
+};
+
 /// Point of a facet: x = Σ N_i x_i.
 struct FacetPoint {
   const ShellFacet* facet = nullptr;
@@ -30,7 +56,7 @@ struct FacetPoint {
 };
 
 /// Nearest point of the facets at which the line to `p` is normal to the surface; nothing outside of all of them.
-std::optional<FacetPoint> project(const std::vector<const ShellFacet*>& facets, const Vector3d& p);
+std::optional<FacetPoint> project(const FacetList& facets, const Vector3d& p);
 
 /// End of a connector that follows four points as the reference grid of an RBE3 with equal weights follows its grids.
 /// The points move by the translations of nodes, linearly at any amplitude. Basic axes.

@@ -236,6 +236,29 @@ class MaterialTemperatures(ProgramTest):
         name = next(n for n in found if "displacement" in n)
         self.assertAlmostEqual(found[name].reshape(-1, 6)[1, 0], 1e-4, places=12)
 
+    def test_welds_on_shells(self):
+        """The material of a weld is at the mean of the grids of its two shells, wherever its place is given."""
+        grids = "".join(f"GRID,{100 * k + 10 * j + i},,{.1 * i:.1f},{.1 * j:.1f},{.02 * (k - 1):.2f}\n"
+                        for k in (1, 2) for j in range(4) for i in range(4))
+        shells = "".join(f"CQUAD4,{100 * k + 10 * j + i},{k},{100 * k + 10 * j + i},{100 * k + 10 * j + i + 1},"
+                         f"{100 * k + 10 * j + i + 11},{100 * k + 10 * j + i + 10}\n" for k in (1, 2) for j in range(3) for i in range(3))
+        temperatures = "".join(f"TEMP,6,{100 * k + 10 * j + i},{3.0 * i + 5 * j + 20 * k}\n" for k in (1, 2) for j in range(4)
+                               for i in range(4))
+        # Shells 112 and 212: grids of columns 2 and 3, rows 1 and 2.
+        T = np.mean([3.0 * i + 5 * j + 20 * k for k in (1, 2) for j in (1, 2) for i in (2, 3)])
+        head = "SOL 101\nCEND\nSPC = 1\nLOAD = 5\nTEMPERATURE(MATERIAL) = 6\nBEGIN BULK\nSPC1,1,123456,100,110,120,130\n" \
+            "FORCE,5,233,0,70.,1.,.3,.2\nPSHELL,1,1,.004,1,,1\nPSHELL,2,1,.003,1,,1\nMAT1,1,7.+10,,.3,2700.\nPWELD,50,9,.02\n"
+        place = "GRID,900,,.24,.17,.5\n"
+        for form in ("CWELD,50,50,,PARTPAT\n,1,2\n,.24,.17,.3\n", place + "CWELD,50,50,900,PARTPAT\n,1,2\n",
+                     place + "CWELD,50,50,900,ELPAT\n,112,212\n", "CWELD,50,50,,ELEMID\n,112,212\n,.24,.17,.3\n",
+                     "CWELD,50,50,,GRIDID,,,QQ\n,112,113,123,122\n,212,213,223,222\n,.24,.17,.3\n"):
+            found = self.static(head + grids + shells + temperatures + form + "MAT1,9,2.+8,,.3\nMATT1,9,31\nTABLEM1,31\n"
+                                ",0.,4.+8,100.,2.+8,ENDT\nENDDATA\n")
+            expected = self.static(head + grids + shells + temperatures + form + f"MAT1,9,{write_real(4e8 - 2e6 * T)},,.3\nENDDATA\n",
+                                   "e")
+            with self.subTest(form):
+                self.same(found, expected, 1e-10)
+
     def test_rejected_input(self):
         tables = write_materials(NOMINAL) + TABLES
         case = "LOAD = 5\nTEMPERATURE(MATERIAL) = 6"
