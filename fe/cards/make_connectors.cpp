@@ -2,10 +2,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "base/number_text.hpp"
-#include "fe/cards/maker.hpp"
+#include "fe/cards/shell_card.hpp"
 #include "fe/cards/shell_patch.hpp"
 #include "fe/elements/beam.hpp"
 #include "fe/elements/bush.hpp"
@@ -36,7 +37,9 @@ class ConnectorMaker {
         facets_(maker.deck(), maker.nodes()),
         pfast_(maker.deck().special.pfast),
         pweld_(maker.deck().special.pweld),
-        pshell_(maker.deck().pshell) {}
+        pshell_(maker.deck().pshell),
+        pcomp_(maker.deck().pcomp),
+        shells_(maker.deck().shells) {}
 
   void make(const records::Cfast& card) {
     who_ = "CFAST " + std::to_string(card.id);
@@ -250,9 +253,20 @@ class ConnectorMaker {
     return R;
   }
 
+  /// Thickness of the shell of an end: mean of T1... of the element, as its stiffness has it, T of PSHELL, plies.
   double find_thickness(const End& end) const {
-    const auto* property = pshell_.find(end.at.facet->property);
-    return property && property->t ? *property->t : 0;
+    const int pid = end.at.facet->property;
+    if (const auto* laminate = pcomp_.find(pid)) {
+      double sum = 0;
+      for (const auto& ply : laminate->plies) sum += ply.t;
+      return sum;
+    }
+    const auto* property = pshell_.find(pid);
+    const double own = property && property->t ? *property->t : 0;
+    const auto* shell = shells_.find(end.at.facet->element);
+    if (!shell || shell->t.empty()) return own;
+    const auto corners = list_thicknesses(*shell, own);
+    return std::accumulate(corners.begin(), corners.end(), 0.0) / static_cast<double>(corners.size());
   }
 
   /// ALIGN: the beam is between the grids themselves.
@@ -352,6 +366,8 @@ class ConnectorMaker {
   RecordIndex<records::Pfast> pfast_;
   RecordIndex<records::Pweld> pweld_;
   RecordIndex<records::Pshell> pshell_;
+  RecordIndex<records::Pcomp> pcomp_;
+  RecordIndex<records::ShellElement> shells_;
   std::string who_;
   records::CardLocation at_;
   std::optional<std::array<int, 2>> whole_;  ///< ends that are grids, with their rotations

@@ -289,6 +289,29 @@ class Connectors(ProgramTest):
         self.assertGreater(turn, .3)
         np.testing.assert_allclose(u[1], u[0], rtol=0, atol=1e-8 * np.abs(u[0]).max())
 
+    def test_length_of_spot_welds(self):
+        """Half the thickness of both shells: of plies, and of T1 to T4, as LDMIN = LDMAX gives it."""
+        d, place = .03, f"GRID,900,,{real(CENTRE[0])},{real(CENTRE[1])},.5\nMAT1,9,2.+9,,.3\n"
+        forms = ("900,PARTPAT\n,1,2\n", "900,ELPAT\n,105,205\n", "900,ELEMID\n,105,205\n")
+        plies = PLATES.replace("PSHELL,1,1,.004,1,,1\n", "PCOMP,1,,,,,,,SYM\n,1,.001,,,1,.0015,\n")
+        lines = []
+        for line in PLATES.splitlines():
+            fields = line.split(",")
+            lines.append(line + ",,\n,,,.002,.004,.006,.006" if fields[0] == "CQUAD4" and fields[2] == "1" else line)
+        for plates, thickness in ((PLATES, .004), (plies, .005), ("\n".join(lines) + "\n", .0045)):
+            length = .5 * (thickness + .003)
+            for form in forms:
+                u = []
+                for end in (",,,,SPOT\n", f"\n,{real(length / d)},{real(length / d)}\n"):
+                    weld = place + f"CWELD,50,50,{form}PWELD,50,9,{real(d)},{end}" if "SPOT" in end else \
+                        place + f"CWELD,50,50,{form}PWELD,50,9,{real(d)}{end}"
+                    self.write("d.bdf", make(101, ("SPC = 1", "LOAD = 5"), CLAMP + LOADS + weld).replace(PLATES, plates))
+                    self.bough("static", "d.bdf", "-o", "d.h5")
+                    with h5py.File(self.path("d.h5")) as f:
+                        u.append(f["subcases"][list(f["subcases"])[0]]["displacement"][()])
+                with self.subTest(form, thickness=thickness):
+                    np.testing.assert_allclose(u[0], u[1], rtol=0, atol=1e-9 * np.abs(u[1]).max())
+
     def test_rejected_input(self):
         pfast, place = PFAST.format(d=".03", mass=""), "GRID,900,,.15,.17,.5\n"
         weld = "PWELD,50,9,.02\nMAT1,9,2.+9,,.3\n"
