@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "base/number_text.hpp"
 #include "fe/cards/shell_card.hpp"
@@ -46,6 +48,13 @@ class ConnectorMaker {
     at_ = card.at;
     const auto* property = pfast_.find(card.pid);
     if (!property) return maker_.report_missing_property(card.pid, "PFAST", who_, card.at);
+    if (card.gb == 0 && !check_sides(card.ida, card.idb, card.by_elements ? "shell" : "property")) return;
+    if (has_no_stiffness(*property) && reported_.insert(property->id).second)
+      maker_.diagnostics().warning(
+          "fe.connector-stiffness", maker_.deck().locate(property->at),
+          "PFAST " + std::to_string(property->id) +
+              " has no stiffness: KT1 to KR3 are zero or blank, and its fasteners join nothing",
+          "give KT1 to KR3, or delete the fasteners");
     std::array<End, 2> ends;
     const std::array<int, 2> ids{card.ida, card.idb};
     for (std::size_t k = 0; k < 2; ++k)
@@ -80,6 +89,9 @@ class ConnectorMaker {
     }
     if (card.format == "GRIDID" && card.grids_b.empty()) return fail_point();
     if (card.format != "GRIDID" && card.idb == 0) return fail_point();
+    if (card.format != "GRIDID" && card.gb == 0 &&
+        !check_sides(card.ida, card.idb, card.format == "PARTPAT" ? "property" : "shell"))
+      return;
     const std::array<int, 2> ids{card.ida, card.idb};
     for (std::size_t k = 0; k < 2; ++k) {
       bool is_found = false;
@@ -107,6 +119,20 @@ class ConnectorMaker {
 
  private:
   static std::vector<int> list_core_dofs() { return {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}; }
+
+  static bool has_no_stiffness(const records::Pfast& p) {
+    const auto is_zero = [](double k) { return k == 0; };
+    return std::all_of(p.kt.begin(), p.kt.end(), is_zero) && std::all_of(p.kr.begin(), p.kr.end(), is_zero);
+  }
+
+  /// A patch that is joined to itself has both ends at one point.
+  bool check_sides(int a, int b, const char* what) {
+    if (a != b) return true;
+    maker_.error("fe.connector-sides", at_,
+                 who_ + " names " + what + " " + std::to_string(a) + " on both sides: it would join a point to itself",
+                 std::string("name the ") + what + " of the other side");
+    return false;
+  }
 
   void fail_point() {
     maker_.error("fe.connector-form", at_, who_ + " joins a point to a patch: side B names no shell",
@@ -174,7 +200,8 @@ class ConnectorMaker {
       if (!place) return false;
       const auto found = project(ends[k].patch, *place);
       if (!found) {
-        report_projection(ends[k], "its place");
+        maker_.error("fe.connector-projection", at_, who_ + ": its place has no projection on " + ends[k].name,
+                     "move it onto the shells of both sides, or name other shells");
         return false;
       }
       ends[k].at = *found;
@@ -187,11 +214,6 @@ class ConnectorMaker {
                                        " degrees, expected at most 20",
                                    "check its place and the shells");
     return true;
-  }
-
-  void report_projection(const End& end, const char* what) {
-    maker_.error("fe.connector-projection", at_, who_ + ": " + what + " has no projection on " + end.name,
-                 "move it onto the shells of both sides, or name other shells");
   }
 
   /// Motion of both ends by the squares of the area of the section around them.
@@ -218,7 +240,11 @@ class ConnectorMaker {
         }
       }
       if (points.size() < 4) {
-        report_projection(end, "the square of its section");
+        maker_.error("fe.connector-projection", at_,
+                     who_ + ": the square of its section reaches beyond " + end.name + ", also with " +
+                         show_number(diameter / (1 << kMaxShrinks)) + " in place of the diameter " +
+                         show_number(diameter) + ": its place is on the rim",
+                     "move its place away from the rim, or name shells that continue there");
         return std::nullopt;
       }
       motion[k] = fit_points(points, end.at.x);
@@ -368,6 +394,7 @@ class ConnectorMaker {
   RecordIndex<records::Pshell> pshell_;
   RecordIndex<records::Pcomp> pcomp_;
   RecordIndex<records::ShellElement> shells_;
+  std::set<int> reported_;  ///< PFAST
   std::string who_;
   records::CardLocation at_;
   std::optional<std::array<int, 2>> whole_;  ///< ends that are grids, with their rotations

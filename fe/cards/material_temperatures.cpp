@@ -1,16 +1,19 @@
 #include "fe/cards/material_temperatures.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <initializer_list>
 #include <iterator>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <unordered_map>
 #include <vector>
 
+#include "base/number_text.hpp"
 #include "fe/cards/shell_patch.hpp"
 #include "fe/cards/temperature_set.hpp"
 #include "formats/records/selection.hpp"
@@ -43,7 +46,7 @@ class Evaluator {
     raise(deck.psolid), raise(s.pbend), raise(s.pweld);
   }
 
-  std::unique_ptr<const Deck> evaluate() {
+  EvaluatedDeck evaluate() {
     Deck& d = *deck_;
     for (auto& e : d.beams)
       if (e.is_cbeam)
@@ -68,7 +71,7 @@ class Evaluator {
     if (num_missing_ > 1 && first_missing_)
       first_missing_->what += " (and " + std::to_string(num_missing_ - 1) + " elements more)";
     if (first_missing_) diagnostics_.add(*first_missing_);
-    return std::move(deck_);
+    return {std::move(deck_), std::move(copies_)};
   }
 
  private:
@@ -186,6 +189,7 @@ class Evaluator {
       property.id = copy->second;
       for (int* id : list_materials(property)) *id = place(*id, *T);
       deck_->temperatures.properties[property.id] = element.pid;
+      copies_[property.id] = {element.pid, *T};
       properties.push_back(std::move(property));
     }
     element.pid = copy->second;
@@ -220,7 +224,10 @@ class Evaluator {
     if (name == "MAT2") is_found = add_mat2(*tables->second, copy->second, T);
     if (name == "MAT8") is_found = add_mat8(*tables->second, copy->second, T);
     if (name == "MAT9") is_found = add_mat9(*tables->second, copy->second, T);
-    if (!is_found) copy->second = mid;  // check_material() has reported it
+    if (is_found)
+      copies_[copy->second] = {mid, T};
+    else
+      copy->second = mid;  // check_material() has reported it
     return copy->second;
   }
 
@@ -339,6 +346,7 @@ class Evaluator {
   std::map<const void*, std::unordered_map<int, std::size_t>> index_;  ///< by list of records: id, index
   std::map<std::tuple<const void*, int, double>, int> properties_;     ///< by list, id and temperature
   std::map<std::pair<int, double>, int> materials_;
+  std::map<int, std::pair<int, double>> copies_;
   std::set<std::pair<int, int>> reported_;
   std::optional<Diagnostic> first_missing_;
   int num_missing_ = 0;
@@ -346,10 +354,33 @@ class Evaluator {
 
 }  // namespace
 
-std::unique_ptr<const Deck> evaluate_materials(const Deck& deck, const records::Subcase& subcase,
-                                               const NodeTable& nodes, Diagnostics& diagnostics) {
+std::string EvaluatedDeck::name_originals(const std::string& text) const {
+  constexpr std::string_view kDigits = "0123456789";
+  constexpr std::string_view kNames[] = {"MAT", "MID", "P", "material", "property"};
+  std::string named;
+  std::size_t done = 0;
+  for (auto first = text.find_first_of(kDigits); first != std::string::npos;) {
+    const auto last = std::min(text.find_first_not_of(kDigits, first), text.size());
+    const auto before = first >= 2 && text[first - 1] == ' ' ? text.rfind(' ', first - 2) + 1 : first;
+    const auto name = std::string_view(text).substr(before, first - before);
+    int id = 0;
+    std::from_chars(text.data() + first, text.data() + last, id);
+    const auto copy = copies.find(id);
+    if (copy != copies.end() &&
+        std::any_of(std::begin(kNames), std::end(kNames), [&](auto start) { return name.starts_with(start); })) {
+      named.append(text, done, first - done);
+      named += std::to_string(copy->second.first) + " at temperature " + show_number(copy->second.second);
+      done = last;
+    }
+    first = text.find_first_of(kDigits, last);
+  }
+  return named.append(text, done);
+}
+
+EvaluatedDeck evaluate_materials(const Deck& deck, const records::Subcase& subcase, const NodeTable& nodes,
+                                 Diagnostics& diagnostics) {
   const auto& tables = deck.temperatures.materials;
-  if (tables.empty()) return nullptr;
+  if (tables.empty()) return {};
   const bool by_initial = subcase.material_temperature == 0;
   const int set = by_initial ? subcase.initial_temperature : subcase.material_temperature;
   if (set == 0) {
@@ -357,14 +388,14 @@ std::unique_ptr<const Deck> evaluate_materials(const Deck& deck, const records::
                         "MATT" + tables.front().material.substr(3) + " " + std::to_string(tables.front().mid) +
                             " has no effect: no temperature is selected at which materials are evaluated",
                         "write TEMPERATURE(MATERIAL) = n in the case control");
-    return nullptr;
+    return {};
   }
   if (TemperatureSet(deck.temperatures, set).is_empty()) {
     const char* command = by_initial ? "TEMPERATURE(INITIAL)" : "TEMPERATURE(MATERIAL)";
     diagnostics.error("fe.missing-load", deck.locate(subcase.find_command(command)),
                       "temperature set " + std::to_string(set) + " has no TEMP, TEMPD, TEMPRB or TEMPP1 card",
                       std::string("correct ") + command + " or add its cards");
-    return nullptr;
+    return {};
   }
   return Evaluator(deck, set, nodes, diagnostics).evaluate();
 }

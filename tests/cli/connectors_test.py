@@ -221,12 +221,13 @@ class Connectors(ProgramTest):
 
     def test_other_units_and_written_deck(self):
         fast = f"CFAST,50,50,PROP,1,2\n,{real(CENTRE[0])},{real(CENTRE[1])},0.\n" + PFAST.format(d=".03", mass="") + \
-            f"CWELD,52,52,,PARTPAT\n,1,2\n,.33,.31,0.\nPWELD,52,9,.02\nMAT1,9,2.+9,,.3\n"
+            f"CWELD,52,52,,PARTPAT\n,1,2\n,.33,.31,0.\nPWELD,52,9,.02\nMAT1,9,2.+9,,.3\nGRID,902,,.21,.12,.5\n" \
+            "CFAST,53,50,ELEM,106,206,902\nCWELD,54,52,902,ELPAT\n,106,206\nCWELD,55,52,,ALIGN,112,212\nSPC1,1,123456,902\n"
         u = self.displacements(self.static(CLAMP + LOADS + fast))
         self.bough("convert", "d.bdf", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.bdf")
         self.bough("export", "d.bdf", "--to", "bdf", "-o", "n.bdf")
         for name, factor in (("mm", 1e3), ("n", 1)):
-            self.bough("static", f"{name}.bdf", "-o", f"{name}.h5")
+            self.assertNotIn("deck.", self.bough("static", f"{name}.bdf", "-o", f"{name}.h5").stderr)
             with h5py.File(self.path(f"{name}.h5")) as f:
                 group = f["subcases"][list(f["subcases"])[0]]
                 v = group["displacement"][()].reshape(-1, 6)
@@ -312,6 +313,19 @@ class Connectors(ProgramTest):
                 with self.subTest(form, thickness=thickness):
                     np.testing.assert_allclose(u[0], u[1], rtol=0, atol=1e-9 * np.abs(u[1]).max())
 
+    def test_doubtful_cards(self):
+        """A fastener without stiffness, and a place that is given twice."""
+        place = "GRID,900,,.15,.17,.5\nSPC1,1,123456,900\n"
+        fast = "CFAST,50,50,PROP,1,2,900\n"
+        for cards, words in [(place + fast + "PFAST,50,.03\n", ["fe.connector-stiffness", "PFAST 50", "KT1 to KR3"]),
+                             (place + fast + ",.1,.1,0.\n" + PFAST.format(d=".03", mass=""), ["deck.unused-field", "GS gives the place"]),
+                             (place + "CWELD,50,50,900,PARTPAT\n,1,2\n,.1,.1,0.\nPWELD,50,9,.02\nMAT1,9,2.+9,,.3\n",
+                              ["deck.unused-field", "GS gives the place"])]:
+            support = "SPC1,1,123456,200,205,210,215,220\n"
+            self.static(CLAMP + LOADS + support + cards)
+            for word in words:
+                self.assertIn(word, self.result.stderr)
+
     def test_rejected_input(self):
         pfast, place = PFAST.format(d=".03", mass=""), "GRID,900,,.15,.17,.5\n"
         weld = "PWELD,50,9,.02\nMAT1,9,2.+9,,.3\n"
@@ -319,6 +333,9 @@ class Connectors(ProgramTest):
                 (place + "CFAST,50,50,PROP,1,7,900\n" + pfast, "fe.connector-shell", ["CFAST 50", "property 7"]),
                 (place + "CFAST,50,50,ELEM,105,777,900\n" + pfast, "fe.connector-shell", ["shell 777"]),
                 ("GRID,900,,.9,.17,.5\nCFAST,50,50,PROP,1,2,900\n" + pfast, "fe.connector-projection", ["property 1"]),
+                ("GRID,900,,.0,.17,.5\nCFAST,50,50,PROP,1,2,900\n" + pfast, "fe.connector-projection", ["is on the rim", "0.001875"]),
+                (place + "CFAST,50,50,PROP,1,1,900\n" + pfast, "fe.connector-sides", ["property 1 on both sides"]),
+                (place + "CWELD,50,50,900,ELEMID\n,105,105\n" + weld, "fe.connector-sides", ["shell 105 on both sides"]),
                 (place + "CWELD,50,50,900,ELEMID\n,105\n" + weld, "fe.connector-form", ["point to a patch"]),
                 (place + "CFAST,50,50,PROP,1,2\n" + pfast, "deck.missing-field", ["GS, GA and XS"]),
                 (place + "CFAST,50,51,PROP,1,2,900\n" + pfast, "fe.missing-property", ["PFAST"]),

@@ -259,6 +259,12 @@ class MaterialTemperatures(ProgramTest):
             with self.subTest(form):
                 self.same(found, expected, 1e-10)
 
+    def test_materials_are_named_by_their_ids(self):
+        """Messages of a material at a temperature name the card of the deck, and not the copy."""
+        tables = write_materials(NOMINAL) + TABLES.replace(",0.,8.+10,100.,6.+10,ENDT", ",0.,8.+10,50.,-6.+10,ENDT")
+        self.write("d.bdf", make(101, "LOAD = 5\nTEMPERATURE(MATERIAL) = 6", tables, "TEMPD,6,60.\n"))
+        self.fails(1, "static", "d.bdf", error="fe.bad-material", says=["MAT1 1 at temperature 60 has E = "])
+
     def test_rejected_input(self):
         tables = write_materials(NOMINAL) + TABLES
         case = "LOAD = 5\nTEMPERATURE(MATERIAL) = 6"
