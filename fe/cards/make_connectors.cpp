@@ -111,8 +111,7 @@ class ConnectorMaker {
         pshell_(maker.deck().pshell) {}
 
   void make(const records::Cfast& card) {
-    who_ = "CFAST " + std::to_string(card.id);
-    at_ = card.at;
+    begin("CFAST", card.id, card.at);
     const auto* property = pfast_.find(card.pid);
     if (!property) return maker_.report_missing_property(card.pid, "PFAST", who_, card.at);
     std::array<End, 2> ends;
@@ -135,8 +134,7 @@ class ConnectorMaker {
   }
 
   void make(const records::Cweld& card) {
-    who_ = "CWELD " + std::to_string(card.id);
-    at_ = card.at;
+    begin("CWELD", card.id, card.at);
     const auto* property = pweld_.find(card.pid);
     if (!property) return maker_.report_missing_property(card.pid, "PWELD", who_, card.at);
     const auto* material = maker_.find_material(property->mid, "PWELD " + std::to_string(property->id), property->at);
@@ -175,6 +173,12 @@ class ConnectorMaker {
   }
 
  private:
+  void begin(const char* card, int id, const records::CardLocation& at) {
+    who_ = std::string(card) + " " + std::to_string(id);
+    at_ = at;
+    shells_.clear();
+  }
+
   static std::vector<int> list_core_dofs() { return {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}; }
 
   void fail_point() {
@@ -200,6 +204,7 @@ class ConnectorMaker {
       return false;
     }
     end.patch = facets_.list_around(*facet);
+    shells_.insert(id);
     return true;
   }
   /// GRIDID: a facet of the grids of the card.
@@ -247,6 +252,7 @@ class ConnectorMaker {
         return false;
       }
       ends[k].at = *found;
+      add_shell(*found);
     }
     const double cosine = std::abs(ends[0].at.normal.dot(ends[1].at.normal));
     if (cosine < std::cos(kMaxAngleDeg * std::numbers::pi / 180))
@@ -256,6 +262,10 @@ class ConnectorMaker {
                                        " degrees, expected at most 20",
                                    "check its place and the shells");
     return true;
+  }
+
+  void add_shell(const FacetPoint& point) {
+    if (point.facet->element > 0) shells_.insert(point.facet->element);
   }
 
   void report_projection(const End& end, const char* what) {
@@ -291,6 +301,7 @@ class ConnectorMaker {
         return std::nullopt;
       }
       motion[k] = fit_motion(points, end.at.x);
+      for (const auto& point : points) add_shell(point);
     }
     return motion;
   }
@@ -398,6 +409,7 @@ class ConnectorMaker {
     for (const auto& [node, slot] : slots) nodes[static_cast<std::size_t>(slot)] = node;
     ConnectorData data;
     data.mass = mass;
+    data.shells.assign(shells_.begin(), shells_.end());
     data.G = MatrixXd::Zero(12, 6 * static_cast<Eigen::Index>(nodes.size()));
     data.weights = MatrixXd::Zero(2, static_cast<Eigen::Index>(nodes.size()));
     if (whole_) {
@@ -422,6 +434,7 @@ class ConnectorMaker {
   RecordIndex<records::Pshell> pshell_;
   std::string who_;
   records::CardLocation at_;
+  std::set<int> shells_;  ///< that the ends of the card are on
   std::optional<std::array<int, 2>> whole_;
 };
 

@@ -11,7 +11,8 @@ struct ConnectorData {
   MatrixXd G;
   /// Weights of the grids in the translation of the ends, 2 x nodes; each row adds up to 1.
   MatrixXd weights;
-  double mass = 0;  ///< [M] half of it at each end
+  double mass = 0;          ///< [M] half of it at each end
+  std::vector<int> shells;  ///< ids of the shells that the ends are on, ascending; none of ends given by grids
 };
 
 /// K = Gᵀ K_c G with the springs or the beam K_c (12 x 12) of the core. G reproduces rigid-body motion, so that K_c
@@ -25,6 +26,8 @@ class Connector final : public Element, public StressState {
 
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  /// Ids of the shells that the ends are on, ascending; empty if the card names grids.
+  const std::vector<int>& shells() const { return data_.shells; }
   const StressState* stress_state() const override { return this; }
   int num_internal_forces() const override { return core_->stress_state()->num_internal_forces(); }
   std::vector<std::string> internal_force_names() const override {
