@@ -151,6 +151,22 @@ class FrequencyTables(DeckResponse):
             self.fails(1, "frequency", "d.bdf", error=error, says=says)
 
 
+    def test_one_table_for_a_load_and_a_property(self):
+        """Values of different dimensions in one table are an error of `convert`, unless their factors are equal."""
+        load, shared = "RLOAD1,9,10,,,1.0", "RLOAD1,9,10,,,101"
+        deck = PAIR.format(sol=108, case="", tables=TABLES)
+        for old, new in ((load, shared), (load, shared.replace("101", "103")), ("TABLED1,101", "TLOAD1,7,10,,,101\nTABLED1,101")):
+            self.write("d.bdf", deck.replace(old, new))
+            self.fails(1, "convert", "d.bdf", "--units", "m-kg-s:mm-tonne-s", "-o", "no.bdf", error="deck.unit-field",
+                       says=["d.bdf:", "TABLED1", "different dimensions"])
+        # K = M/T² does not change with the unit of length; GE has no dimension.
+        self.write("d.bdf", deck.replace(load, shared))
+        self.bough("convert", "d.bdf", "--units", "m-kg-s:mm-kg-s", "-o", "fine.bdf")
+        self.assertIn("80.", self.read("fine.bdf"))
+        self.write("d.bdf", deck.replace(load, shared.replace("101", "102")))
+        self.bough("convert", "d.bdf", "--units", "m-kg-s:mm-tonne-s", "-o", "fine.bdf")
+
+
 # A rigid shaft with its mass in the middle on two bearings across x; two flexible beams.
 ROTOR = """SOL {sol}
 CEND
