@@ -544,6 +544,10 @@ Selections read_selections(const fe::Model& model, const records::DynamicDeck& d
     diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
                         "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
                         "damp by PARAM,G, GE or dampers, or solve by modes (SOL 110)");
+  if (!is_by_modes && d.modsel != 0)
+    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("MODSEL")),
+                        "MODSEL selects real modes: the direct solution has none and leaves it out",
+                        "solve by modes (SOL 110), or take it out");
   return found;
 }
 

@@ -276,6 +276,10 @@ void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcas
     diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
                         "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
                         "damp by PARAM,G, GE or dampers, or solve by modes (--modal)");
+  if (subcase.dynamics.modsel != 0)
+    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("MODSEL")),
+                        "MODSEL selects modes: the direct solution has none and leaves it out",
+                        "solve by modes (--modal), or take it out");
   if (is_over_time) return;
   const int set = subcase.dynamics.frequency;
   for (const auto& list : deck.dynamics.frequencies)
