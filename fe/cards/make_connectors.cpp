@@ -71,9 +71,12 @@ class Facets {
     const auto found = by_element_.find(id);
     return found == by_element_.end() ? nullptr : found->second;
   }
-  FacetList list_property(int pid) const {
+  /// Shells of a property; nullptr without.
+  const FacetTree* find_property(int pid) {
+    const auto made = trees_.find(pid);
+    if (made != trees_.end()) return &made->second;
     const auto found = by_property_.find(pid);
-    return found == by_property_.end() ? FacetList{} : found->second;
+    return found == by_property_.end() ? nullptr : &trees_.emplace(pid, FacetTree(found->second)).first->second;
   }
   /// The shell and those that share a grid with it and continue it: no webs across it.
   FacetList list_around(const ShellFacet& facet) const {
@@ -92,11 +95,13 @@ class Facets {
   std::vector<int> properties_;
   std::unordered_map<int, const ShellFacet*> by_element_;
   std::unordered_map<int, FacetList> by_property_, by_node_;
+  std::unordered_map<int, FacetTree> trees_;  ///< by property, made when first named
 };
 
 /// One end: the shells on which it is, and its point.
 struct End {
-  FacetList patch;
+  FacetList patch;  ///< empty with `of_property`
+  const FacetTree* of_property = nullptr;
   std::string name;  ///< "shell 7", "property 3"
   FacetPoint at;
 };
@@ -187,9 +192,9 @@ class ConnectorMaker {
   }
 
   bool find_property(int pid, End& end) {
-    end.patch = facets_.list_property(pid);
+    end.of_property = facets_.find_property(pid);
     end.name = "property " + std::to_string(pid);
-    if (!end.patch.empty()) return true;
+    if (end.of_property) return true;
     maker_.error("fe.connector-shell", at_,
                  who_ + " names property " + std::to_string(pid) + ", of which the deck has no shell",
                  "correct the id");
@@ -246,7 +251,7 @@ class ConnectorMaker {
       const int own = k == 0 ? ga : gb;
       const auto place = own > 0 ? find_place(own) : std::optional(k == 0 || own > 0 || gs > 0 ? from : ends[0].at.x);
       if (!place) return false;
-      const auto found = project(ends[k].patch, *place);
+      const auto found = ends[k].of_property ? ends[k].of_property->project(*place) : project(ends[k].patch, *place);
       if (!found) {
         report_projection(ends[k], "its place");
         return false;
@@ -284,9 +289,9 @@ class ConnectorMaker {
       Vector3d along = end.at.facet->x.col(1) - end.at.facet->x.col(0);
       along = (along - along.dot(axis) * axis).normalized();
       const Vector3d across = axis.cross(along);
-      FacetList near;  // of a property with many shells those within reach of the square
-      for (const auto* facet : end.patch)
-        if ((facet->centre - end.at.x).norm() <= facet->radius + diameter) near.push_back(facet);
+      // Facets that the square may be on.
+      const FacetList near =
+          end.of_property ? end.of_property->list_near(end.at.x, diameter) : list_near(end.patch, end.at.x, diameter);
       double half = 0.25 * std::sqrt(std::numbers::pi) * diameter;
       std::vector<FacetPoint> points;
       for (int i = 0; i <= kMaxShrinks && points.size() < 4; ++i, half /= 2) {

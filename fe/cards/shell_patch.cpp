@@ -1,5 +1,7 @@
 #include "fe/cards/shell_patch.hpp"
 
+#include <algorithm>
+
 #include <Eigen/LU>
 
 #include "base/rotation.hpp"
@@ -43,7 +45,63 @@ std::optional<FacetPoint> project_on(const ShellFacet& facet, const Vector3d& p)
   return at;
 }
 
+bool is_near(const ShellFacet& facet, const Vector3d& p, double distance) {
+  return (p - facet.centre).norm() <= facet.radius + distance;
+}
+
+/// Collects the facets whose sphere is within a distance of a point, for Eigen::BVIntersect.
+struct NearFacets {
+  const std::vector<const ShellFacet*>& facets;
+  const Vector3d& p;
+  double distance = 0;
+  std::vector<int> found = {};
+
+  bool intersectVolume(const Eigen::AlignedBox3d& box) const { return box.exteriorDistance(p) <= distance; }
+  bool intersectObject(int i) {
+    if (is_near(*facets[static_cast<std::size_t>(i)], p, distance)) found.push_back(i);
+    return false;  // goes on
+  }
+};
+
 }  // namespace
+
+std::vector<const ShellFacet*> list_near(const std::vector<const ShellFacet*>& facets, const Vector3d& p,
+                                         double distance) {
+  std::vector<const ShellFacet*> list;
+  for (const auto* facet : facets)
+    if (is_near(*facet, p, distance)) list.push_back(facet);
+  return list;
+}
+
+FacetTree::FacetTree(std::vector<const ShellFacet*> facets) : facets_(std::move(facets)) {
+  std::vector<int> indices;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const auto* facet : facets_) {
+    indices.push_back(static_cast<int>(indices.size()));
+    const Vector3d half = Vector3d::Constant(facet->radius);
+    boxes.emplace_back(facet->centre - half, facet->centre + half);
+    max_radius_ = std::max(max_radius_, facet->radius);
+  }
+  tree_.init(indices.begin(), indices.end(), boxes.begin(), boxes.end());
+}
+
+std::vector<const ShellFacet*> FacetTree::list_near(const Vector3d& p, double distance) const {
+  NearFacets near{facets_, p, distance};
+  Eigen::BVIntersect(tree_, near);
+  std::sort(near.found.begin(), near.found.end());
+  std::vector<const ShellFacet*> list;
+  for (const int i : near.found) list.push_back(facets_[static_cast<std::size_t>(i)]);
+  return list;
+}
+
+std::optional<FacetPoint> FacetTree::project(const Vector3d& p) const {
+  for (double distance = max_radius_;; distance *= 2) {
+    const auto near = list_near(p, distance);
+    const auto found = fe::project(near, p);
+    // A facet that is not in the list is farther.
+    if ((found && found->distance <= distance) || near.size() == facets_.size()) return found;
+  }
+}
 
 std::optional<FacetPoint> project(const std::vector<const ShellFacet*>& facets, const Vector3d& p) {
   std::optional<FacetPoint> nearest;

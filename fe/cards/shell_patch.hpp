@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include <unsupported/Eigen/BVH>
+
 #include "fe/elements/element.hpp"
 
 namespace bough::fe {
@@ -31,6 +33,26 @@ struct FacetPoint {
 
 /// Nearest point of the facets at which the line to `p` is normal to the surface; nothing outside of all of them.
 std::optional<FacetPoint> project(const std::vector<const ShellFacet*>& facets, const Vector3d& p);
+
+/// Facets whose sphere is within the distance of p [L], in the order of the patch.
+std::vector<const ShellFacet*> list_near(const std::vector<const ShellFacet*>& facets, const Vector3d& p,
+                                         double distance);
+
+/// Patch of many facets, in a tree of bounding boxes.
+class FacetTree {
+ public:
+  /// The facets must outlive this; one at least.
+  explicit FacetTree(std::vector<const ShellFacet*> facets);
+  /// Facets of the patch by list_near().
+  std::vector<const ShellFacet*> list_near(const Vector3d& p, double distance) const;
+  /// The point of project() of all facets.
+  std::optional<FacetPoint> project(const Vector3d& p) const;
+
+ private:
+  std::vector<const ShellFacet*> facets_;
+  Eigen::KdBVH<double, 3, int> tree_;  ///< indices
+  double max_radius_ = 0;
+};
 
 /// Motion of a point by nodes: 6 x 3 for the translations of each, basic axes.
 using PointMotion = std::map<int, Eigen::Matrix<double, 6, 3>>;

@@ -257,6 +257,36 @@ class Connectors(ProgramTest):
                                  "\n" + place + "CFAST,50,50,PROP,1,3,900\nCFAST,51,50,PROP,2,3,900\n" + pfast))
         self.assertIn("fe.connector-angle", self.bough("static", "d.bdf").stderr)
 
+    def test_shells_by_property_and_by_id(self):
+        """Connectors by property equal those by shells: plates of 400 shells, five sides of a shell apart."""
+        n = 20
+        bulk = make_plate(1000, 1, 0, n) + make_plate(2000, 2, 5 * A, n, .03)
+        bulk += "PSHELL,1,1,.004,1,,1\nPSHELL,2,1,.003,1,,1\nMAT1,1,7.+10,,.3,2700.\nSPC1,1,123456,1000,THRU,1020\n"
+        bulk += "FORCE,5,2440,0,70.,1.,.3,.2\n" + PFAST.format(d=real(.03), mass="0.") + "PWELD,60,1,.03\n"
+        random = np.random.default_rng(5)
+        decks = ["", ""]
+        for k, (x, y) in enumerate(np.round(random.uniform(.05, 1.95, (30, 2)), 4)):
+            a, b = (first + int(y / A) * n + int((x - x0) / A) for first, x0 in ((1000, 0), (2000, .03)))
+            place = f"{real(x)},{real(y)},{real(float(random.choice((-3., 0., .25, 2.))))}"
+            if k % 2:
+                forms = f"PROP,1,2,,,,\n,{place}", f"ELEM,{a},{b},,,,\n,{place}"
+                decks = [deck + f"CFAST,{9001 + k},50,{form}\n" for deck, form in zip(decks, forms)]
+            else:
+                forms = f"PARTPAT,,,,,\n,1,2,,,,,,,\n,{place}", f"ELPAT,,,,,\n,{a},{b},,,,,,,\n,{place}"
+                decks = [deck + f"CWELD,{9001 + k},60,,{form}\n" for deck, form in zip(decks, forms)]
+        case = ["SPC = 1", "LOAD = 5"]
+        found = []
+        for deck in decks:
+            self.write("d.bdf", "\n".join(["SOL 101", "CEND", *case, "BEGIN BULK", bulk + deck, "ENDDATA", ""]))
+            self.bough("static", "d.bdf", "-o", "d.h5", "-q")
+            with h5py.File(self.path("d.h5")) as f:
+                group = f["subcases"][list(f["subcases"])[0]]
+                arrays = {}
+                group.visititems(lambda path, item: arrays.update({path: item[()]}) if isinstance(item, h5py.Dataset) else None)
+            found.append(self.displacements(arrays))
+        self.assertGreater(np.abs(found[0]).max(), 0)
+        np.testing.assert_allclose(found[0], found[1], rtol=0, atol=1e-9 * np.abs(found[1]).max())
+
 
 if __name__ == "__main__":
     unittest.main()
