@@ -363,24 +363,25 @@ class Split(ProgramTest):
 
     def test_plate_joined_by_its_grids(self):
         """Where a rigid cut is 1 to 16 % off; the drilling rotation of a plate is joined where it has stiffness."""
+        plate = make_plate(ny=2, more="SPC1,1,123456,1,14,27\n")
         for k6rot in ("100.", "0."):
-            answer, messages = self.split_by_grids(make_plate().replace("K6ROT,100.", "K6ROT," + k6rot), "--parts", 3, number=4,
+            answer, messages = self.split_by_grids(plate.replace("K6ROT,100.", "K6ROT," + k6rot), "--parts", 3, number=4,
                                                    system=k6rot != "0.")
-            self.assertEqual([p["joined_grids"] for p in answer["parts"]], [0, 4, 4])
+            self.assertEqual([p["joined_grids"] for p in answer["parts"]], [0, 3, 3])
             self.assertEqual([p["parent"] for p in answer["parts"]], ["ground", "deck-1", "deck-2"])
             text = self.read("deck-run.toml")
             self.assertEqual("[split.released]" in messages, k6rot == "0.")
             self.assertEqual("note: part deck-1: AUTOSPC holds" in messages, k6rot == "0.")
             self.assertEqual("6 of grid 5, 6 of grid 18, " in messages, k6rot == "0.")
-            self.assertEqual(text.count("[[constraint]]"), 8)
-            self.assertEqual(text.count('rotations = "z"'), 0 if k6rot == "100." else 8)
+            self.assertEqual(text.count("[[constraint]]"), 6)
+            self.assertEqual(text.count('rotations = "z"'), 0 if k6rot == "100." else 6)
             for name in os.listdir(self.folder):
                 os.remove(self.path(name))
 
     def test_box_and_column_joined_by_their_grids(self):
         # Corners pass all moments. The system at rest: differences of so stiff corners leave `linearize` three digits.
-        self.split_by_grids(make_box(), "--parts", 2, number=5, system=False)
-        self.compare_at_rest(make_box(), "deck-2", 38, (0., -6e-3, -8e-3))
+        self.split_by_grids(make_box(6), "--parts", 2, number=5, system=False)
+        self.compare_at_rest(make_box(6), "deck-2", 26, (0., -6e-3, -8e-3))
         for name in os.listdir(self.folder):
             os.remove(self.path(name))
         self.split_by_grids(make_column(), "--parts", 2, number=4)
