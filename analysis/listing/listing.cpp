@@ -121,10 +121,10 @@ std::optional<ListingMaker::Choice> ListingMaker::choose(int subcase, const std:
   if (selection == nullptr) return std::nullopt;
   const auto request = selection->outputs.find(command);
   if (request == selection->outputs.end() || request->second.is_none) return std::nullopt;
-  if (request->second.is_all) return Choice{nullptr, request->second.is_printed};
+  if (request->second.is_all) return Choice{nullptr, request->second.is_printed, request->second.is_fibre};
   const auto set = selection->sets.find(request->second.set);
   if (set == selection->sets.end()) return std::nullopt;
-  return Choice{&set->second, request->second.is_printed};
+  return Choice{&set->second, request->second.is_printed, request->second.is_fibre};
 }
 
 ListedStep ListingMaker::make_step(int subcase) const {
@@ -223,17 +223,54 @@ BeamLoads ListingMaker::sum_beam_loads(const fe::Model& model, const records::St
   return sums;
 }
 
+void ListingMaker::add_bushes(const ElementIndex& elements, const std::vector<records::ElementForces>& forces,
+                              const Eigen::Ref<const VectorXd>& u_g, ListedStep& step) const {
+  using enum records::PointTable;
+  for (const auto& [command, blocks] :
+       {std::pair("STRESS", &ListedStep::stresses), std::pair("STRAIN", &ListedStep::strains)}) {
+    const bool of_strain = blocks == &ListedStep::strains;
+    const auto choice = choose(step.subcase, command);
+    if (!choice || (of_strain && lists_all_)) continue;
+    for (const auto& of_card : forces) {
+      auto block = make_listed_bushes(
+          elements, deck_, of_card, u_g, [&](int id) { return choice->contains(id); },
+          of_strain ? FibreStrain : Stress);
+      if (!block || block->id.empty()) continue;
+      block->is_printed = choice->is_printed;
+      (step.*blocks).push_back(std::move(*block));
+    }
+  }
+}
+
+void ListingMaker::add_strains(const fe::Model& model, const ElementIndex& elements,
+                               const std::vector<records::ElementStresses>& strains,
+                               const std::vector<records::ElementForces>& forces, ListedStep& step,
+                               Diagnostics& diagnostics) {
+  const auto choice = choose(step.subcase, "STRAIN");
+  if (lists_all_ || !choice) return;
+  using enum records::PointTable;
+  for (const auto& of_card : strains) {
+    auto block = make_listed_stresses(
+        model, elements, deck_, of_card, forces, limits_, [&](int id) { return choice->contains(id); },
+        choice->is_fibre ? FibreStrain : CurvatureStrain);
+    if (block)
+      block->is_printed = choice->is_printed;
+    else
+      note_unlisted("strains of " + of_card.card, diagnostics);
+    if (block && !block->id.empty()) step.strains.push_back(std::move(*block));
+  }
+}
+
 void ListingMaker::add_stresses(const fe::Model& model, const ElementIndex& elements,
                                 const std::vector<records::ElementStresses>& stresses,
                                 const std::vector<records::ElementForces>& forces, ListedStep& step,
                                 Diagnostics& diagnostics) {
-  if (!lists_all_ && choose(step.subcase, "STRAIN")) note_unlisted("strains (STRAIN)", diagnostics);
   const auto choice = choose(step.subcase, "STRESS");
   if (!choice) return;
   for (const auto& of_card : forces)
-    if (records::get_card_of_group(of_card.card).starts_with("CBUSH") && left_out_.insert("CBUSH").second)
+    if (records::get_card_of_group(of_card.card) == "CBUSH1D" && left_out_.insert("CBUSH1D").second)
       diagnostics.note("cli.unlisted-elements", deck_.locate({}), "the listing has no stresses of " + of_card.card,
-                       "write FORCE = ALL: they are its forces times the recovery coefficients of PBUSH");
+                       "write FORCE = ALL: its force is listed");
   for (const auto& of_card : stresses) {
     auto block = make_listed_stresses(model, elements, deck_, of_card, forces, limits_,
                                       [&](int id) { return choice->contains(id); });
@@ -293,6 +330,8 @@ void ListingMaker::add_static(const fe::Model& model, const records::StaticSubca
   const auto elements = index_elements(model);
   add_elements(model, elements, solved.elements, sum_beam_loads(model, solved), step, diagnostics);
   add_stresses(model, elements, solved.stresses, solved.elements, step, diagnostics);
+  add_strains(model, elements, solved.strains, solved.elements, step, diagnostics);
+  add_bushes(elements, solved.elements, solved.displacement, step);
   add_energies(solved.elements, solved.strain_energy, step);
   add_grid_forces(model, solved.grid_forces, step);
   listing_.steps.push_back(std::move(step));
@@ -354,11 +393,12 @@ void ListingMaker::add_shapes(const fe::Model& model, const modal::EigenPairs& p
   const int subcase = roots.subcase;
   ListedStep step;
   static_cast<records::ListedHeading&>(step) = roots;
-  if (!lists_all_ && choose(subcase, "STRAIN")) note_unlisted("strains (STRAIN)", diagnostics);
   const bool has_reactions = reactions && choose(subcase, "SPCFORCES").has_value();
   const bool has_forces = choose(subcase, "FORCE").has_value(), has_stresses = choose(subcase, "STRESS").has_value();
   const bool has_energies = !lists_all_ && choose(subcase, "ESE").has_value();
-  const auto elements = has_forces || has_stresses ? index_elements(model) : ElementIndex{};
+  const bool has_strains = !lists_all_ && choose(subcase, "STRAIN").has_value();
+  const auto elements =
+      has_forces || has_stresses || has_strains ? index_elements(model) : ElementIndex{};
   for (Index j = 0; j < pairs.lambda.size(); ++j) {
     ListedStep mode = step;
     mode.kind = ListedStep::Kind::Mode;
@@ -370,12 +410,16 @@ void ListingMaker::add_shapes(const fe::Model& model, const modal::EigenPairs& p
       VectorXd reaction = fe::calc_reactions(model, reactions(j));
       add_vector(model, "SPCFORCES", ListedKind::SpcForce, reaction, mode);
     }
-    if (has_forces || has_stresses || has_energies) {
+    if (has_forces || has_stresses || has_energies || has_strains) {
       const auto forces = fe::calc_element_forces(model, pairs.Phi.col(j), deck_, 0, diagnostics);
       add_elements(model, elements, forces, {}, mode, diagnostics);
       if (has_stresses)
         add_stresses(model, elements, fe::calc_element_stresses(model, pairs.Phi.col(j), deck_, 0), forces, mode,
                      diagnostics);
+      if (has_strains)
+        add_strains(model, elements, fe::calc_element_strains(model, pairs.Phi.col(j), deck_, 0), forces, mode,
+                    diagnostics);
+      if (has_stresses || has_strains) add_bushes(elements, forces, pairs.Phi.col(j), mode);
       add_energies(forces, 0.5 * roots.stiffness(j), mode);
     }
     listing_.steps.push_back(std::move(mode));

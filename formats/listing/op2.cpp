@@ -33,7 +33,7 @@ void demand_small_ids(const records::Listing& listing) {
   };
   for (const auto& step : listing.steps) {
     for (const auto& vector : step.vectors) look(vector.id);
-    for (const auto* blocks : {&step.forces, &step.stresses})
+    for (const auto* blocks : {&step.forces, &step.stresses, &step.strains})
       for (const auto& block : *blocks) look(block.id);
   }
   if (largest <= kMaxId) return;
@@ -250,11 +250,20 @@ Words make_element_ident(const ListedStep& step, const records::ListedElements& 
   return ident;
 }
 
-/// Stresses: by element, layer or corner (docs/formats/op2.md).
+/// Stress code, word 11: 1 von Mises (0 largest shear), 2 and 8 strain, 4 at the fibres.
+int find_stress_code(const records::ListedElements& block) {
+  const int von_mises = is_layered(block.type) ? 0 : 1;
+  if (!block.is_strain()) return von_mises;
+  const bool is_plate = block.type == 33 || block.type == 74;
+  const bool is_fibre = is_layered(block.type) || (is_plate && block.table == records::PointTable::FibreStrain);
+  return 10 + (is_fibre ? 4 : 0) + von_mises;
+}
+
+/// Stresses and strains: by element, layer or corner (docs/formats/op2.md).
 void add_stresses(const ListedStep& step, const records::ListedElements& block, Op2Writer& file) {
   const bool is_complex = block.imag.size() > 0;
   Words ident = make_element_ident(step, block, 5), data;
-  ident.set(10, is_layered(block.type) ? 0 : 1);  // largest shear, or von Mises
+  ident.set(10, find_stress_code(block));
   int count = 0;
   for (std::size_t k = 0; k < block.id.size(); ++k) {
     if (is_solid(block.type)) {
@@ -455,6 +464,9 @@ std::string make_op2(const records::Listing& listing) {
   add_blocks(
       listing, "OES1", &ListedStep::stresses, [](int type) { return !is_layered(type); }, add_stresses, file);
   add_blocks(listing, "OES1C", &ListedStep::stresses, is_layered, add_stresses, file);
+  add_blocks(
+      listing, "OSTR1", &ListedStep::strains, [](int type) { return !is_layered(type); }, add_stresses, file);
+  add_blocks(listing, "OSTR1C", &ListedStep::strains, is_layered, add_stresses, file);
   for (const auto& [name, kind] : {std::pair("OUG", ListedKind::Displacement), std::pair("OVG", ListedKind::Velocity),
                                    std::pair("OAG", ListedKind::Acceleration), std::pair("OQG", ListedKind::SpcForce)})
     add_random(listing.random, name, kind, file);

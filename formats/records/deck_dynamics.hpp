@@ -226,6 +226,7 @@ struct OutputRequest {
   bool is_phase = false;  ///< magnitude and phase, else real and imaginary parts
   bool is_punched = false;
   bool is_printed = true;  ///< PRINT, or neither it nor PLOT and PUNCH
+  bool is_fibre = false;   ///< STRAIN(FIBER): strains of plates at Z1 and Z2
   CardLocation at;
 };
 

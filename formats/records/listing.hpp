@@ -30,7 +30,12 @@ struct ListedVector {
   bool is_printed = true;      ///< in the f06 too
 };
 
-/// Forces or stresses of the elements of one card, in ascending order, in Nastran's columns (docs/formats/op2.md).
+/// Quantity of ListedElements: stresses; strains of plates at their fibres, or of the reference surface with
+/// curvatures.
+enum class PointTable { Stress, FibreStrain, CurvatureStrain };
+
+/// Forces, stresses or strains of the elements of one card, in ascending order, in Nastran's columns
+/// (docs/formats/op2.md).
 struct ListedElements {
   std::string card;
   int type = 0;                          ///< Nastran's element type
@@ -41,6 +46,10 @@ struct ListedElements {
   Eigen::MatrixXd imag;                  ///< of the same size, or empty: real
   bool is_phase = false;                 ///< imag not empty: they are magnitude and phase in degrees
   bool is_printed = true;
+  PointTable table = PointTable::Stress;  ///< of stresses and strains
+
+  /// Returns true if the columns are strains.
+  bool is_strain() const { return table != PointTable::Stress; }
 };
 
 /// Strain energies of the elements of one card, in ascending order.
@@ -73,7 +82,7 @@ struct ListedStep : ListedHeading {
   double eigenvalue = 0, cycles = 0;
   double at = 0;  ///< Hz or time
   std::vector<ListedVector> vectors;
-  std::vector<ListedElements> forces, stresses;
+  std::vector<ListedElements> forces, stresses, strains;
   std::vector<ListedEnergies> energies;
   std::vector<ListedGridForce> grid_forces;  ///< by grid in ascending order
 };

@@ -3,8 +3,8 @@ import struct
 from collections import namedtuple
 
 Record = namedtuple("Record", "ident data")
-WIDTHS = {1: 3, 2: 100, 3: 3, 10: 3, 11: 2, 12: 2, 13: 2, 14: 2, 33: 9, 34: 9, 74: 9, 102: 7}
-COMPLEX_WIDTHS = {1: 5, 2: 177, 3: 5, 10: 5, 11: 3, 12: 3, 13: 3, 14: 3, 33: 17, 34: 17, 74: 17, 102: 13}
+WIDTHS = {1: 3, 2: 100, 3: 3, 10: 3, 11: 2, 12: 2, 13: 2, 14: 2, 33: 9, 34: 9, 74: 9, 102: 7, 117: 9, 126: 7}
+COMPLEX_WIDTHS = {1: 5, 2: 177, 3: 5, 10: 5, 11: 3, 12: 3, 13: 3, 14: 3, 33: 17, 34: 17, 74: 17, 102: 13, 117: 17, 126: 13}
 
 
 class Op2:
@@ -114,9 +114,9 @@ class Op2:
                           rows))
         return found
 
-    def list_stresses(self):
-        """(table, words of its ident, data) of each record of stresses of elements."""
-        return [(table, ident[0], data) for table in ("OES1", "OES1C") for ident, data in self.tables.get(table, [])]
+    def list_stresses(self, tables=("OES1", "OES1C")):
+        """(table, words of its ident, data) of each record of stresses (OSTR1, OSTR1C: strains) of elements."""
+        return [(table, ident[0], data) for table in tables for ident, data in self.tables.get(table, [])]
 
     def random_curves(self, name):
         """SORT2: {(table code, subcase, point): (type, frequencies or lags, values)} of real random results."""

@@ -66,6 +66,7 @@ DynamicCommand read_request(const CommandText& c, const char* name, DynamicSelec
   }
   request.is_phase = has_option(c.options, "PHASE");
   request.is_punched = has_option(c.options, "PUNCH");
+  request.is_fibre = has_option(c.options, "FIBER");
   request.is_printed = has_option(c.options, "PRINT") || (!request.is_punched && !has_option(c.options, "PLOT"));
   request.at = c.at;
   selected.outputs[name] = request;
