@@ -69,7 +69,7 @@ void note_random(const records::DynamicDeck& deck, const std::vector<records::Dy
 void note_unlisted_requests(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
   records::CaseRequests requests;
   requests.selections = deck.selections;
-  for (const char* command : {"STRAIN"})
+  for (const char* command : {"STRAIN", "GPSTRESS", "STRFIELD"})
     if (asks_for(requests, command))
       diagnostics.note("cli.request-by-option", deck.locate({}),
                        std::string("the deck requests ") + command + ", which responses do not have",

@@ -10,6 +10,7 @@
 #include "analysis/common/ranks.hpp"
 #include "analysis/common/superelements.hpp"
 #include "analysis/listing/element_columns.hpp"
+#include "analysis/listing/grid_stresses.hpp"
 #include "fe/loads/load_sets.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
@@ -102,12 +103,25 @@ void ListingMaker::report_sets(Diagnostics& diagnostics) const {
   std::set<std::string> known;
   for (const auto& [id, selection] : requests_.selections)
     for (const auto& [command, request] : selection.outputs) {
-      if (request.is_all || request.is_none || selection.sets.count(request.set) > 0) continue;
+      const bool of_fields = command == "GPSTRESS" || command == "STRFIELD";
+      if (of_fields && !request.is_none && requests_.stress_fields.empty() && known.insert(command).second)
+        diagnostics.warning("cli.missing-set", deck_.locate(request.at),
+                            command + " lists surfaces and volumes, of which the case control has none",
+                            "write OUTPUT(POST), SET 9 = elements and SURFACE 1 SET 9 NORMAL X3");
+      if (request.is_all || request.is_none) continue;
+      if (of_fields ? requests_.post_sets.contains(request.set) : selection.sets.contains(request.set)) continue;
       const auto text = fmt::format("{} = {} names a SET that the case control does not define", command, request.set);
       if (known.insert(text).second)
         diagnostics.error("cli.missing-set", deck_.locate(request.at), text,
-                          fmt::format("write SET {} = ids, or {} = ALL", request.set, command));
+                          fmt::format("write SET {} = ids{}, or {} = ALL", request.set,
+                                      of_fields ? " of surfaces and volumes after OUTPUT(POST)" : "", command));
     }
+  for (const auto& field : requests_.stress_fields)
+    if (field.set != 0 && !requests_.post_sets.contains(field.set))
+      diagnostics.error("cli.missing-set", deck_.locate(field.at),
+                        fmt::format("{} {} names SET {}, which OUTPUT(POST) does not define",
+                                    field.is_volume ? "VOLUME" : "SURFACE", field.id, field.set),
+                        fmt::format("write SET {} = elements after OUTPUT(POST)", field.set));
 }
 
 std::optional<int> ListingMaker::find_effective_mass_grid(int subcase) const {
@@ -242,6 +256,34 @@ void ListingMaker::add_bushes(const ElementIndex& elements, const std::vector<re
   }
 }
 
+void ListingMaker::add_grid_stresses(const fe::Model& model, const ElementIndex& elements,
+                                     const std::vector<records::ElementForces>& forces, ListedStep& step,
+                                     Diagnostics& diagnostics) {
+  if (lists_all_) return;
+  const auto* selection = find_selection(requests_, step.subcase);
+  if (selection == nullptr) return;
+  for (const auto& field : requests_.stress_fields) {
+    bool is_selected = false, is_printed = false;
+    for (const char* command : {"GPSTRESS", "STRFIELD"}) {
+      const auto request = selection->outputs.find(command);
+      if (request == selection->outputs.end() || request->second.is_none) continue;
+      const auto set = requests_.post_sets.find(request->second.set);
+      if (!request->second.is_all && (set == requests_.post_sets.end() || !set->second.contains(field.id))) continue;
+      is_selected = true;
+      is_printed = is_printed || (command == std::string("GPSTRESS") && request->second.is_printed);
+    }
+    if (!is_selected) continue;
+    const auto members = requests_.post_sets.find(field.set);
+    std::set<std::string> skipped;
+    auto block = calc_grid_stresses(
+        model, elements, deck_, field, forces, [&](int id) { return field.set == 0 || members->second.contains(id); },
+        skipped);
+    for (const auto& card : skipped) note_unlisted("grid point stresses of " + card, diagnostics);
+    block.is_printed = is_printed;
+    step.grid_stresses.push_back(std::move(block));
+  }
+}
+
 void ListingMaker::add_strains(const fe::Model& model, const ElementIndex& elements,
                                const std::vector<records::ElementStresses>& strains,
                                const std::vector<records::ElementForces>& forces, ListedStep& step,
@@ -332,6 +374,7 @@ void ListingMaker::add_static(const fe::Model& model, const records::StaticSubca
   add_stresses(model, elements, solved.stresses, solved.elements, step, diagnostics);
   add_strains(model, elements, solved.strains, solved.elements, step, diagnostics);
   add_bushes(elements, solved.elements, solved.displacement, step);
+  add_grid_stresses(model, elements, solved.elements, step, diagnostics);
   add_energies(solved.elements, solved.strain_energy, step);
   add_grid_forces(model, solved.grid_forces, step);
   listing_.steps.push_back(std::move(step));
@@ -397,8 +440,11 @@ void ListingMaker::add_shapes(const fe::Model& model, const modal::EigenPairs& p
   const bool has_forces = choose(subcase, "FORCE").has_value(), has_stresses = choose(subcase, "STRESS").has_value();
   const bool has_energies = !lists_all_ && choose(subcase, "ESE").has_value();
   const bool has_strains = !lists_all_ && choose(subcase, "STRAIN").has_value();
+  const auto* selection = lists_all_ ? nullptr : find_selection(requests_, subcase);
+  const bool has_grid_stresses =
+      selection && (selection->outputs.contains("GPSTRESS") || selection->outputs.contains("STRFIELD"));
   const auto elements =
-      has_forces || has_stresses || has_strains ? index_elements(model) : ElementIndex{};
+      has_forces || has_stresses || has_strains || has_grid_stresses ? index_elements(model) : ElementIndex{};
   for (Index j = 0; j < pairs.lambda.size(); ++j) {
     ListedStep mode = step;
     mode.kind = ListedStep::Kind::Mode;
@@ -410,7 +456,7 @@ void ListingMaker::add_shapes(const fe::Model& model, const modal::EigenPairs& p
       VectorXd reaction = fe::calc_reactions(model, reactions(j));
       add_vector(model, "SPCFORCES", ListedKind::SpcForce, reaction, mode);
     }
-    if (has_forces || has_stresses || has_energies || has_strains) {
+    if (has_forces || has_stresses || has_energies || has_strains || has_grid_stresses) {
       const auto forces = fe::calc_element_forces(model, pairs.Phi.col(j), deck_, 0, diagnostics);
       add_elements(model, elements, forces, {}, mode, diagnostics);
       if (has_stresses)
@@ -420,6 +466,7 @@ void ListingMaker::add_shapes(const fe::Model& model, const modal::EigenPairs& p
         add_strains(model, elements, fe::calc_element_strains(model, pairs.Phi.col(j), deck_, 0), forces, mode,
                     diagnostics);
       if (has_stresses || has_strains) add_bushes(elements, forces, pairs.Phi.col(j), mode);
+      if (has_grid_stresses) add_grid_stresses(model, elements, forces, mode, diagnostics);
       add_energies(forces, 0.5 * roots.stiffness(j), mode);
     }
     listing_.steps.push_back(std::move(mode));

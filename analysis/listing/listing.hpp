@@ -81,6 +81,10 @@ class ListingMaker {
   /// strains.
   void add_bushes(const ElementIndex& elements, const std::vector<records::ElementForces>& forces,
                   const Eigen::Ref<const Eigen::VectorXd>& u_g, records::ListedStep& step) const;
+  /// Grid point stresses of the SURFACEs and VOLUMEs that GPSTRESS and STRFIELD select.
+  void add_grid_stresses(const fe::Model& model, const ElementIndex& elements,
+                         const std::vector<records::ElementForces>& forces, records::ListedStep& step,
+                         Diagnostics& diagnostics);
   /// Strains, only if the deck requests them.
   void add_strains(const fe::Model& model, const ElementIndex& elements,
                    const std::vector<records::ElementStresses>& strains,

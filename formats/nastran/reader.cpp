@@ -68,8 +68,11 @@ records::CaseRequests make_requests(const detail::Source& source, Diagnostics& d
   records::CaseRequests requests;
   Diagnostics ignored_diagnostics;  // reported when the deck is read
   deck.files = source.files;
-  detail::ControlOptions control{
-      .dynamics = &deck, .combinations = &requests.combinations, .combination_diagnostics = &diagnostics};
+  detail::ControlOptions control{.dynamics = &deck,
+                                 .combinations = &requests.combinations,
+                                 .combination_diagnostics = &diagnostics,
+                                 .post = &requests,
+                                 .post_diagnostics = &diagnostics};
   for (const auto& section : detail::split_bulk(source).sections) control.superelements.insert(section.id);
   detail::read_control(source, deck, ignored_diagnostics, control);
   requests.selections = std::move(deck.selections);

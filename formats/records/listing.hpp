@@ -52,6 +52,24 @@ struct ListedElements {
   bool is_strain() const { return table != PointTable::Stress; }
 };
 
+/// Grid point stresses of a SURFACE or VOLUME, by grid in ascending order.
+struct ListedGridStresses {
+  int id = 0;
+  bool is_volume = false;
+  int cid = 0;                                   ///< system of the output, 0: basic
+  bool is_element_system = false;                ///< SYSTEM ELEMENT: no system
+  int axis = 1;                                  ///< SURFACE: x axis of the output, 1 to 3
+  std::string normal;                            ///< SURFACE: R, X1, X2, X3
+  bool is_reversed = false;                      ///< SURFACE: normal with M
+  bool has_direct = true, has_principal = true;  ///< VOLUME
+  bool is_printed = true;
+  std::vector<int> grid, element;  ///< of each row; element 0: mean of all elements
+  std::vector<std::string> fibre;  ///< SURFACE: Z1, Z2, MID of each row
+  /// SURFACE: x y xy, angle [deg], major, minor, largest shear, von Mises. VOLUME: xx yy zz xy yz zx, mean pressure,
+  /// von Mises, principal a b c, cosines of x to a b c, of y, of z.
+  Eigen::MatrixXd values;
+};
+
 /// Strain energies of the elements of one card, in ascending order.
 struct ListedEnergies {
   std::string card;
@@ -84,6 +102,7 @@ struct ListedStep : ListedHeading {
   std::vector<ListedVector> vectors;
   std::vector<ListedElements> forces, stresses, strains;
   std::vector<ListedEnergies> energies;
+  std::vector<ListedGridStresses> grid_stresses;
   std::vector<ListedGridForce> grid_forces;  ///< by grid in ascending order
 };
 

@@ -31,7 +31,8 @@ constexpr std::array requests{
     Request{"VELO", "VELOCITY"},     Request{"ACCE", "ACCELERATION"}, Request{"SPCF", "SPCFORCES"},
     Request{"FORC", "FORCE"},        Request{"ELFO", "FORCE"},        Request{"OLOA", "OLOAD"},
     Request{"MPCF", "MPCFORCES"},    Request{"STRE", "STRESS"},       Request{"ELST", "STRESS"},
-    Request{"STRA", "STRAIN"},       Request{"ESE", "ESE"},           Request{"GPFO", "GPFORCE"}};
+    Request{"STRA", "STRAIN"},       Request{"ESE", "ESE"},           Request{"GPFO", "GPFORCE"},
+    Request{"GPST", "GPSTRESS"},     Request{"STRF", "STRFIELD"}};
 
 bool has_option(std::string_view options, std::string_view option) {
   while (!options.empty()) {
