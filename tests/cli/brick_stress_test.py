@@ -1,4 +1,4 @@
-"""Stresses of one CHEXA: against a vendor's for one motion, and a cube under warping tractions against fine meshes."""
+"""Stresses of CHEXA, CQUAD4 and CTRIA3 against a vendor's; a cube under warping tractions against fine meshes."""
 import os
 import struct
 import unittest
@@ -76,6 +76,32 @@ class Vendor(ProgramTest):
         expected[1, 0], expected[2, 1], expected[0, 2] = 29e6 * strain[1, 0], 29e6 * strain[2, 1], 29e6 * strain[0, 2]
         np.testing.assert_allclose(theirs[4:7, :3], expected, atol=5e-5 * size)
         np.testing.assert_allclose(theirs[4:, 3:], 0, atol=5e-5 * size)
+
+
+class InPlaneShear(ProgramTest):
+    @unittest.skipUnless(os.path.isfile(SHARED), f"no file {SHARED}")
+    def test_vendor(self):
+        """CTRIA3 of NX Nastran 10.1 with MAT1 2.9+7, 1.1+7, .32: τ of the reference surface is E / 2(1 + NU) γ, not G γ."""
+        tables = {}
+        for name, ident, data in read_vendor(SHARED):
+            if ident[2] == 74 and ident[1] == 1005:
+                tables.setdefault(name[:4], [row for row in struct.iter_unpack("<i14f", data)])
+        ratios = [(s[6] + s[13]) / 2 / e[6] for s, e in zip(tables["OES1"], tables["OSTR"], strict=True)]
+        np.testing.assert_allclose(ratios, 2.9e7 / 2.64, rtol=1e-5)
+
+    def test_shells(self):
+        """CQUAD4 and CTRIA3 of Bough sheared by γ have τ = E / 2(1 + NU) γ."""
+        gamma, modulus = 2e-4, 2.9e7 / 2.64
+        grids = {1: (0, 0), 2: (1, 0), 3: (1, 1), 4: (0, 1)}
+        bulk = "MAT1,1,2.9+7,1.1+7,.32\nPSHELL,1,1,.1,1,,1\nSPC1,1,3456,1,THRU,4\n" + "".join(
+            f"GRID,{g},,{x}.,{y}.,0.\nSPC,1,{g},1,{gamma * y!r}\nSPC,1,{g},2,0.\n" for g, (x, y) in grids.items())
+        for cards, kinds in (("CQUAD4,1,1,1,2,3,4\n", (33,)), ("CTRIA3,1,1,1,2,3\nCTRIA3,2,1,1,3,4\n", (74, 74))):
+            self.write("d.bdf", "SOL 101\nCEND\nSPC = 1\nSTRESS = ALL\nBEGIN BULK\n" + bulk + cards + "ENDDATA\n")
+            self.bough("static", "d.bdf", "--op2", "d.op2")
+            found = read_stresses(Op2(self.path("d.op2")))
+            self.assertEqual([kind for kind, _ in found], list(kinds))
+            for row in found.values():
+                np.testing.assert_allclose(row[5], modulus * gamma, rtol=1e-5)  # major principal stress
 
 
 class Warping(ProgramTest):
