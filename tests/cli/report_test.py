@@ -171,6 +171,28 @@ class Report(ProgramTest):
         self.assertEqual(page.get_data()[0]["bodies"][0]["drawing"]["shapes"], [])
         self.assertTrue(any("is not the file that the run was started with" in " ".join(r) for r in page.get_table("Health")))
 
+    def test_largest_deflection_is_that_of_all_samples(self):
+        """One sample of 2,001 is the largest: the headline and the health have it, with its time."""
+        self.make_boom()
+        self.bough("run", "spinup.toml", "-o", "spinup.h5")
+        with h5py.File(self.path("boom.h5")) as f:
+            phi = f["modes/phi"][:, :3]
+        for sample in (803, 1998):
+            with h5py.File(self.path("spinup.h5"), "r+") as f:
+                self.assertEqual(len(f["time"]), 2001)
+                eta = f["bodies/boom/eta"]
+                eta[sample] = 3 * np.abs(eta[:]).max(axis=0) * [1, -1, 1]
+                sizes = np.linalg.norm(np.einsum("nim,tm->tni", phi, eta[:]), axis=2).max(axis=1)
+                self.assertEqual(sizes.argmax(), sample)
+                time = f["time"][sample]
+            health = {r[1]: r for r in self.report("spinup.h5").get_table("Health")}
+            note = health["deflection of body boom to its size"][3]
+            with open(self.path("page.html"), encoding="utf-8") as f:
+                headline = re.search(r"<dt>largest deflection</dt><dd>([\d.]+) .*?at t = ([\d.]+)", f.read())
+            for found, at in (re.match(r"([\d.]+) of .* at t = ([\d.]+)", note).groups(), headline.groups()):
+                self.assertAlmostEqual(float(found), sizes.max(), delta=1e-3 * sizes.max())
+                self.assertAlmostEqual(float(at), time, delta=1e-3 * time)
+
     def test_motion_without_stiffening_is_told(self):
         self.make_boom()
         self.bough("run", "spinup-no-kg.toml", "-o", "no-kg.h5")
