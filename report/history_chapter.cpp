@@ -133,11 +133,15 @@ std::string make_statistics(const History& h) {
 std::string make_histories(const History& h, const Strides& strides, Chapter& chapter) {
   std::string html;
   if (std::max(strides.first, strides.others) > 1)
-    html += make_text(fmt::format("To keep the page small the curves hold 1 of {} samples of sensors, hinges and "
-                                  "energies and 1 of {} of the others; tables are from all of them. --channel chooses "
-                                  "fewer channels.",
-                                  strides.first, strides.others),
-                      "note");
+    html += make_text(
+        fmt::format("To keep the page small the curves hold {} of sensors, hinges and energies, the smallest and the "
+                    "largest of each {} samples of bodies, reactions and masses, each at its time; the motion shows 1 "
+                    "of {} samples. Tables are from all samples. --channel chooses fewer channels.",
+                    strides.first > 1
+                        ? fmt::format("the smallest and the largest of each {} samples", 2 * strides.first)
+                        : "all samples",
+                    2 * strides.others, strides.others),
+        "note");
   html += "<div class=\"live\" data-view=\"history\">\n";
   std::vector<const HistoryChannel*> shown;
   const auto collect = [&](const auto& is_chosen) {

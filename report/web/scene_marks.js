@@ -81,14 +81,8 @@ export class SceneMarks {
   // Of all samples: { value, name, time }.
   find_largest(is_moment) {
     const most = { value: 0, name: "", time: 0 };
-    for (const arrow of this.sources.filter((a) => a.moment === is_moment)) {
-      const time = this.view.run.get_time(arrow.source), columns = (arrow.column < 0 ? [0, 1, 2] : [arrow.column]).map((c) => this.view.run.get_values(arrow.source, c));
-      const unit = arrow.column < 0 || arrow.towards ? 1 : Math.hypot(...arrow.axes.map((row) => row[0]));
-      for (let i = 0; i < time.length; ++i) {
-        const value = unit * Math.hypot(...columns.map((y) => y[i]));
-        if (value > most.value) Object.assign(most, { value, name: arrow.name, time: time[i] });
-      }
-    }
+    for (const { name, largest } of this.sources.filter((a) => a.moment === is_moment))
+      if (largest.value > most.value) Object.assign(most, { ...largest, name });
     return most.value > kNoise ? most : { value: 0, name: "", time: 0 };
   }
 

@@ -507,6 +507,45 @@ class Page(BrowserTest):
         b.run(WAIT_FRAMES)
         self.assertNotEqual(b.run(HASH % ".plots .chart .curves"), before)
         self.check_sound()
+    def test_a_thinned_run(self):
+        """Samples that are left out: peaks stay in the curves, the table is of all samples, no spectrum is drawn from the
+        others, and the CSV has samples of the file at their times."""
+        write_results(self.path("long.h5"), 120000, [f"s{k}" for k in range(10)])
+        with h5py.File(self.path("long.h5"), "r+") as f:
+            f["sensors/s0"][77777] = 9.0
+            t, y = f["time"][:], f["sensors/s0"][:]
+        b = self.open_built("long.h5")
+        drawn = b.run("Array.from(document.querySelector('.live[data-view=history]').view.charts[0].series[0].y)")
+        self.assertAlmostEqual(max(drawn), 9, places=5)
+        cells = b.run("[...document.querySelectorAll('.statistics tbody tr')][0].textContent && "
+                      "[...document.querySelector('.statistics tbody tr').cells].map((c) => c.textContent.replace('\u2212', '-'))")
+        np.testing.assert_allclose([float(c) for c in cells[2:]], [y.min(), y.max(), np.ptp(y), y.mean(), np.sqrt((y**2).mean()), len(y)],
+                                   rtol=1e-5, atol=1e-6)
+        self.assertIn("from all samples", b.run("document.querySelector('.statistics caption').textContent"))
+        b.click(".plots .tools label:nth-child(2) input")
+        notes = b.run("[...document.querySelectorAll('.no-spectrum')].map((p) => p.textContent)")
+        self.assertEqual(len(notes), 10)
+        self.assertIn("--sensor s0 --spectrum", notes[0])
+        self.assertFalse(b.run("[...document.querySelectorAll('.plots h4')].some((h) => h.textContent.startsWith('spectrum'))"))
+        b.run("document.querySelector('.no-spectrum').scrollIntoView({ block: 'center' })")
+        self.picture("thinned")
+        b.run("(() => { window.saved = []; const make = URL.createObjectURL.bind(URL);"
+              " URL.createObjectURL = (blob) => { saved.push(blob); return make(blob); }; })()")
+        b.click(".plots .tools button[title^='Save the samples']")
+        lines = b.run("saved[0].text()").splitlines()
+        self.assertEqual(lines[0].split(",")[:2], ["time", "s0 [L]"] if "[" in lines[0] else ["time", "s0"])
+        rows = [line.split(",") for line in lines[1:]]
+        times, values = np.array([[float(r[0]), float(r[1])] for r in rows if r[1]]).T
+        at = np.rint(times / t[1]).astype(int)
+        np.testing.assert_allclose(times, t[at], rtol=1e-12)
+        np.testing.assert_allclose(values, y[at], atol=1e-6)
+        self.assertIn(77777, at)
+        # A window: extremes of its samples, no means.
+        box = b.show(".plots .chart .overlay")
+        b.drag((box["x"] + 200, box["y"] + 100), (box["x"] + 600, box["y"] + 102))
+        self.assertIn("need samples that the page does not have", b.run("document.querySelector('.statistics caption').textContent"))
+        self.check_sound()
+
 
     def test_print(self):
         """On paper every view is there, light, and charts are as wide as a sheet; after it all is as it was."""

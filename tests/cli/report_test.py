@@ -70,6 +70,14 @@ def unpack(column, count):
     return np.where(codes == MISSING, np.nan, 2 * (column["low"] / 2 + codes * (column["step"] / 2)))
 
 
+def unpack_extremes(extremes):
+    """Index and value of each sample that a thinned column keeps: differences in base 64 (report/pack.hpp)."""
+    digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"
+    codes = np.array([digits.index(c) for c in extremes["at"]]).reshape(-1, extremes["digits"])
+    at = np.cumsum(codes @ 64**np.arange(extremes["digits"])[::-1])
+    return at, unpack(extremes, len(at))
+
+
 def write_results(path, samples, names, values=None, completed=1, extra=()):
     """A results file as docs/formats/results.md has it."""
     generator = np.random.default_rng(3)
@@ -427,7 +435,22 @@ class Report(ProgramTest):
         stride = page.get_data()[0]["channels"][0]["stride"]
         self.assertGreater(stride, 1)
         with open(self.path("page.html")) as f:
-            self.assertIn(f"the curves hold 1 of {stride} samples", f.read())
+            self.assertIn(f"the curves hold the smallest and the largest of each {2 * stride} samples of sensors", f.read())
+        # Each is a sample of the file at its time; none of these samples is beyond them.
+        with h5py.File(self.path("long.h5")) as f:
+            for channel in page.get_data()[0]["channels"][:5]:
+                whole, extremes = f[channel["path"]][:], channel["columns"][0]["extremes"]
+                at, values = unpack_extremes(extremes)
+                self.assertEqual((at[0], at[-1]), (0, len(whole) - 1))
+                self.assertTrue(np.all(np.diff(at) > 0))
+                np.testing.assert_allclose(values, whole[at], atol=0.51 * extremes["step"])
+                for begin in range(0, len(whole), 2 * stride):
+                    own = values[(at >= begin) & (at < begin + 2 * stride)]
+                    part = whole[begin:begin + 2 * stride]
+                    self.assertAlmostEqual(own.min(), part.min(), delta=0.51 * extremes["step"])
+                    self.assertAlmostEqual(own.max(), part.max(), delta=0.51 * extremes["step"])
+                self.assertAlmostEqual(extremes["mean"], whole.mean(), delta=1e-12)
+                self.assertAlmostEqual(extremes["rms"], np.sqrt((whole**2).mean()), delta=1e-12)
         one = self.report("long.h5", "--channel", "s7")
         self.assertEqual([(c["path"], c["stride"]) for c in one.get_data()[0]["channels"]], [("/sensors/s7", 1)])
         self.fails(1, "report", "long.h5", "--channel", "s77", error="cli.unknown-channel")
