@@ -50,6 +50,7 @@ ARMS = toml(
     table("sensor", "gyro", "gyro", body="lower", node=1, rotation_deg=[0.0, 0.0, 30.0]),
     table("sensor", "bend", "hinge_angle", hinge="elbow"),
     table("sensor", "span", "distance", body="lower", node=1, target=[0.0, 0.0, 1.0]),
+    table("event", "the distance to the upper fixed point passes one metre", time=0.4, action="log"),
     section("simulation", duration=2.0, output_step=0.005, gravity=[0.0, 0.0, -9.81]))
 
 
@@ -270,6 +271,21 @@ class Page(BrowserTest):
                 np.testing.assert_allclose(turning, 0, atol=1e-4)
                 shoulder = found["shoulder", False]
                 np.testing.assert_allclose(shoulder[0] - elbow[0] + pull, 1.5 * (a["upper"][k] - gravity), atol=1e-4)
+                # The picture of the whole has the heads of the arrows, and the ends of the axes.
+                tips = b.run("""(() => { const v = document.querySelector('[data-view=motion]').view, { viewer } = v, tips = v.marks.list_tips(v.get_places(), v.time, viewer.extent);
+                  return [...tips, 0, 0, v.viewer.extent / 10].reduce((rows, x, i) => (i % 3 ? rows[rows.length - 1].push(x) : rows.push([x]), rows), [])
+                    .map((p) => viewer.find_place(p)).map(([x, y]) => [x / viewer.canvas.clientWidth, y / viewer.canvas.clientHeight]); })()""")
+                self.assertTrue(np.all((np.array(tips) > 0) & (np.array(tips) < 1)), tips)
+        # Labels of events are above the curves, none is cut.
+        labels = b.run("""(() => { const { charts } = document.querySelector('.live[data-view=history]').view, chart = charts[0], g = chart.canvas.getContext('2d');
+          return [chart.frame.top, chart.place_mark_labels(g).map(([text, x]) => [text, x + g.measureText(text).width <= chart.frame.left + chart.frame.width])]; })()""")
+        with h5py.File(self.path("run.h5")) as f:
+            self.assertGreater(len(f["events/time"]), 0)
+        self.assertGreaterEqual(labels[0], 23)
+        self.assertTrue(labels[1] and all(fits for _, fits in labels[1]), labels)
+        b.show(".plots .chart")
+        self.picture("event-labels")
+        b.show(".motion")
         legend = b.run("document.querySelector('.motion').textContent")
         for word in ("an arrow of length 1 [L] is", "Moment (two heads)", "shoulder", "sensors: "):
             self.assertIn(word, legend)
@@ -491,22 +507,6 @@ class Page(BrowserTest):
         self.picture("long")
         self.check_sound()
 
-    def test_a_batch_of_changes_counts_by_its_last(self):
-        """A chart left the screen and came back in one batch of its observer: it is on the screen, and a zoom draws it."""
-        self.browser.call("Page.addScriptToEvaluateOnNewDocument", source="""(() => { const Real = window.IntersectionObserver;
-            const leave = (e) => e.target.className === "stage" && e.isIntersecting
-              ? [{ target: e.target, isIntersecting: false }, e] : [e];
-            window.IntersectionObserver = class extends Real {
-              constructor(act, options) { super((entries, self) => act(entries.flatMap(leave), self), options); } }; })()""")
-        write_results(self.path("run.h5"), 200, ["s0"])
-        b = self.open_built("run.h5")
-        box = b.show(".plots .chart .overlay")
-        b.run(WAIT_FRAMES)
-        before = b.run(HASH % ".plots .chart .curves")
-        b.drag((box["x"] + 200, box["y"] + 100), (box["x"] + 600, box["y"] + 102))
-        b.run(WAIT_FRAMES)
-        self.assertNotEqual(b.run(HASH % ".plots .chart .curves"), before)
-        self.check_sound()
     def test_a_thinned_run(self):
         """Samples that are left out: peaks stay in the curves, the table is of all samples, no spectrum is drawn from the
         others, and the CSV has samples of the file at their times."""
@@ -546,6 +546,22 @@ class Page(BrowserTest):
         self.assertIn("need samples that the page does not have", b.run("document.querySelector('.statistics caption').textContent"))
         self.check_sound()
 
+    def test_a_batch_of_changes_counts_by_its_last(self):
+        """A chart left the screen and came back in one batch of its observer: it is on the screen, and a zoom draws it."""
+        self.browser.call("Page.addScriptToEvaluateOnNewDocument", source="""(() => { const Real = window.IntersectionObserver;
+            const leave = (e) => e.target.className === "stage" && e.isIntersecting
+              ? [{ target: e.target, isIntersecting: false }, e] : [e];
+            window.IntersectionObserver = class extends Real {
+              constructor(act, options) { super((entries, self) => act(entries.flatMap(leave), self), options); } }; })()""")
+        write_results(self.path("run.h5"), 200, ["s0"])
+        b = self.open_built("run.h5")
+        box = b.show(".plots .chart .overlay")
+        b.run(WAIT_FRAMES)
+        before = b.run(HASH % ".plots .chart .curves")
+        b.drag((box["x"] + 200, box["y"] + 100), (box["x"] + 600, box["y"] + 102))
+        b.run(WAIT_FRAMES)
+        self.assertNotEqual(b.run(HASH % ".plots .chart .curves"), before)
+        self.check_sound()
 
     def test_print(self):
         """On paper every view is there, light, and charts are as wide as a sheet; after it all is as it was."""
