@@ -1,5 +1,5 @@
 import { Chart } from "./chart.js";
-import { Box, Drawing, find_extremes } from "./drawing.js";
+import { Box, Drawing, find_extremes, kBarNote } from "./drawing.js";
 import { label_time, with_unit } from "./history.js";
 import { find_index, format_number } from "./numbers.js";
 import { el, get_css, get_style, make_button, make_check, make_color_bar, make_select, make_slider, make_swatch, save_blob } from "./page_parts.js";
@@ -77,7 +77,7 @@ export class MotionView {
       this.on_pick?.(found);
     };
     this.pin_host = el("div", { class: "pins" });
-    const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there; a click in this view names a node.");
+    const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there; a click in this view names a node." + (moving.some((b) => b.drawing.has_bars()) ? kBarNote : ""));
     this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock, this.pin_button), this.pin_host, this.bar.element, this.color_note, names, this.marks.legend, this.marks.now, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();
