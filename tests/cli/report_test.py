@@ -387,6 +387,17 @@ class Report(ProgramTest):
                 degrees = np.frombuffer(base64.b64decode(pair["degrees"]), "<f8")
                 np.testing.assert_allclose(np.exp(1j * np.radians(degrees[drawn])), H[drawn] / np.abs(H[drawn]), atol=1e-7)
             self.assertEqual(len(page.get_table("Poles")) - 1, len(A))
+            poles = np.linalg.eigvals(A)
+        with open(self.path("page.html"), encoding="utf-8") as f:
+            text = f.read()
+        headlines = dict(re.findall(r"<dt>([^<]*)</dt><dd>([^<]*)</dd>", text))
+        self.assertIn("largest gain", headlines)
+        frequency = re.search(r"<dt>smallest damping ratio</dt><dd>[^<]*</dd><dd class=.note.>at ([\d.]+) Hz", text)[1]
+        self.assertAlmostEqual(float(frequency), np.abs(poles).min() / (2 * np.pi), delta=1e-4)
+        damping = 100 * (-poles.real / np.abs(poles)).min()
+        self.assertAlmostEqual(float(headlines["smallest damping ratio"].split()[0]), damping, delta=1e-2)
+        # Lines of constant frequency have numbers.
+        self.assertRegex(text, "\u03c9 [\\d.]+</text>")
 
     def test_comparison_selection_campaign(self):
         self.make_boom()
