@@ -127,7 +127,7 @@ export async function show_history(extra = []) {
   const text = [...history, ...extra].join("\n") + "\n";
   const area = el("textarea", { rows: 10, readonly: true, "aria-label": "commands", class: "code" });
   area.value = text;
-  const note = el("p", { class: "note" }, "These lines, typed in the folder of the studio, do the same.");
+  const note = el("p", { class: "note" }, "These lines, typed in the folder of the studio with its files as they are saved now, do the same.");
   const choice = await ask_user("Commands", el("div", {}, note, area), [["copy", "Copy"], ["", "Close"]]);
   if (choice === "copy") await navigator.clipboard.writeText(text).catch(() => {});
 }
