@@ -175,6 +175,13 @@ class Flow(PageTest):
         self.wait("Number(studio.view.poles.chart.element.dataset.followed) >= 4")
         self.wait("!studio.view.poles.is_asking")
         gain = float(page.run("document.querySelector('[aria-label=\"parameter gain\"]').value"))
+        chosen = "document.querySelector('.pole-picker').selectedOptions[0].textContent"
+        self.assertEqual(page.run(chosen), page.run("document.querySelector('.work-column .picked').textContent").replace("shape of the pole ", ""))
+        # "no pole" ends the motion: the system at its start.
+        self.choose("move in the shape of", "no pole")
+        self.wait("document.querySelector('.scene-host').dataset.pole === undefined && !studio.view.motion.is_playing")
+        self.click_at(x, y)
+        self.wait("document.querySelector('.scene-host').dataset.pole === '0'")
         self.assertGreater(gain, 5)
         self.bough("linearize", "sliders.toml", "--set", f"gain={gain}", "-o", "shell.h5")
         with h5py.File(self.path("shell.h5")) as f:
@@ -191,6 +198,17 @@ class Flow(PageTest):
 
         page.click("details.block-diagram summary")
         self.wait("Number(document.querySelector('.diagram-host').dataset.blocks) > 5")
+        # Above the table: its poles are those of the file. A click on a pole of now takes it, though one of then is below.
+        self.assertIn(f"not with gain={gain:g}".rstrip("0"), page.run("document.querySelector('[data-panel=poles] .stale').textContent"))
+        page.run("studio.view.poles.chart.element.scrollIntoView({ block: 'center' })")
+        for k in range(4):
+            at = page.run(f"""(() => {{ const {{ chart, poles }} = studio.view.poles, b = chart.overlay.getBoundingClientRect();
+              return [b.x + chart.map_x(poles.x[{k}]), b.y + chart.map_y(poles.y[{k}])]; }})()""")
+            self.click_at(*at)
+            index = page.run(f"studio.view.poles.poles.index[{k}]")
+            self.wait(f"document.querySelector('.scene-host').dataset.pole === '{index}'")
+            tip = page.run("document.querySelector('[data-view=poles] .tip').textContent")
+            self.assertTrue(tip.startswith(page.run(f"studio.view.poles.poles.frequency[{k}].toPrecision(5).replace(/0+$/, '')")), tip)
         page.show("svg.diagram")
         self.keep("studio-diagram")
         page.run("document.querySelector('svg.diagram [aria-label=\"controller pid\"]').focus()")

@@ -77,15 +77,20 @@ export class SystemView {
     if (this.is_running || has_errors || this.text_drawn === this.pane.text) return;
     const text = this.pane.text;
     try {
-      const { chapter } = await ask("preview", { file: this.file, text });
-      if (text !== this.pane.text) return;  // another text is checked by now
-      this.text_drawn = text;
-      this.bodies = (answer.bodies ?? []).map((path) => this.studio.to_name(path));
-      const run = new ReportChapter(chapter.data).run, list_bodies = (r) => r?.data.bodies.map((b) => b.name).join("\n");
-      this.show_scene(run, false, list_bodies(run) === list_bodies(this.motion?.run));
+      await this.show_start();
     } catch (error) {
       if (error.messages) this.pane.messages.show(error.messages);
     }
+  }
+
+  /** Draws the system of the text at its start. */
+  async show_start() {
+    const text = this.pane.text;
+    const { chapter } = await ask("preview", { file: this.file, text });
+    if (text !== this.pane.text) return;  // another text is checked by now
+    this.text_drawn = text;
+    const run = new ReportChapter(chapter.data).run, list_bodies = (r) => r?.data.bodies.map((b) => b.name).join("\n");
+    this.show_scene(run, false, list_bodies(run) === list_bodies(this.motion?.run));
   }
 
   /** Draws a run in the same viewer, its end while it grows; the camera stays if `is_kept` and there is one. */
