@@ -1,5 +1,6 @@
 """bough studio in headless Chromium by mouse and keys: from a deck to a body, a system, a run, poles and a page; the
 files written give the same numbers by the command line. Skipped, with a message, where chromium is not installed."""
+import json
 import os
 import re
 import shutil
@@ -134,6 +135,12 @@ class Flow(PageTest):
         self.check_page(page)
         self.assertTrue(all(url.startswith((self.address, "blob:", "data:")) or url.endswith("favicon.ico") for url in page.list_requests()))
 
+        # The page has what is on the screen: the run and the poles.
+        before = page.run(f"studio.find('{stem}-run.html').time")
+        page.click("button.save-page")
+        self.wait(f"studio.find('{stem}-run.html').time !== {json.dumps(before)}")
+        self.assertIn('data-view="poles"', self.read(stem + "-run.html"))
+        self.assertIn('data-view="motion"', self.read(stem + "-run.html"))
         # The lines that the page shows, in another folder of the shell.
         page.click("button.copy")
         self.wait("document.querySelector('dialog textarea')")

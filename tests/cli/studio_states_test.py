@@ -215,7 +215,7 @@ class Systems(PageTest):
         self.keep("studio-found-run")
         self.assertFalse(page.run("document.querySelector('.progress button').hidden"))
         self.click_text("Stop")
-        self.wait("document.querySelector('.progress-line').textContent.startsWith('ended with code 3: bough run sliders.toml')")
+        self.wait("document.querySelector('.progress-line').textContent.startsWith('stopped: bough run sliders.toml')")
         self.wait("document.querySelector('.result').dataset.ready === 'true'")
         self.wait("document.querySelector('.jobs').childElementCount === 0")
         self.assertEqual(self.call("jobs")["result"]["jobs"], [])
@@ -242,7 +242,7 @@ class Systems(PageTest):
         self.browser.visit(self.address)
         self.wait(run)
         self.click_text("Stop")
-        self.wait("document.querySelector('.progress-line').textContent.startsWith('ended with code 3')")
+        self.wait("document.querySelector('.progress-line').textContent.startsWith('stopped: ')")
         self.ask("chapter", file="sliders.h5")
 
     def test_a_reload_opens_the_file_that_was_open(self):

@@ -223,15 +223,19 @@ export class SystemView {
     }
   }
 
-  /** Whole results: scene, all panels; the run before stays in a chart of both. `is_old`: the last run wrote none. */
-  async show_results(is_old = false) {
+  /**
+   * Whole results: scene, all panels; the run before stays in a chart of both.
+   * @param {boolean} [is_old]  the last run wrote none  @param {boolean} [is_cut]  it was stopped: the scene stays at its end
+   */
+  async show_results(is_old = false, is_cut = false) {
     await this.studio.attempt(async () => {
       const { chapter } = await ask("chapter", { file: this.output, bodies: this.bodies ?? [] });
       this.shown?.dispose();
       this.poles = null;
       this.shown = make_chapter(chapter, ["system", "motion"]);
       const run = this.shown.data.run;
-      this.show_scene(run, false, false, is_old ? null : this.earlier[0]);
+      this.show_scene(run, is_cut && !is_old, is_cut, is_old ? null : this.earlier[0]);
+      this.shown_model = null;
       const note = is_old ? [el("p", { class: "banner", role: "alert" }, "The last run wrote no results. These are the results of a run before.")] : [];
       this.result.replaceChildren(el("h2", {}, this.output), ...note, ...(is_old ? [] : this.make_ghosts(run)), this.shown.element);
       this.result.dataset.ready = is_old ? "old" : "true";
@@ -269,6 +273,7 @@ export class SystemView {
     this.shown = make_chapter(chapter, [], (name, chart, data) => {
       if (name === "poles") this.poles = new PolePanel(this, chart, data, options.some(([name]) => name === "--equilibrium"));
     });
+    this.shown_model = output;
     this.result.replaceChildren(el("h2", {}, output), this.shown.element);
     this.result.dataset.ready = verb;
     this.result.scrollIntoView({ block: "start" });
@@ -277,7 +282,10 @@ export class SystemView {
   report() {
     return this.studio.attempt(async () => {
       const output = stem(this.file) + ".html";
-      const done = await run_job({ verb: "report", files: [this.output, ...(this.bodies ?? [])], options: [["-o", output]] }, this.progress.update);
+      // What is on the screen: the run, and poles or a state of rest that were computed after it.
+      const files = [...(this.studio.has(this.output) ? [this.output] : []), ...(this.shown_model ? [this.shown_model] : [])];
+      if (files.length === 0) throw new Error("there are no results yet: run or linearize first");
+      const done = await run_job({ verb: "report", files: [...files, ...(this.bodies ?? [])], options: [["-o", output]] }, this.progress.update);
       this.progress.finish(done);
       await this.studio.refresh();
       if (done.code === 0) this.studio.say(`written: ${output}`);
