@@ -120,6 +120,9 @@ class Flow(PageTest):
         self.assertGreater(page.run(COLORS), 10)
         page.show(".result [data-panel=histories]")
         self.wait("document.querySelector('.result .chart canvas')")
+        widths = page.run("[...document.querySelectorAll('.result .history .stage, .result [data-panel=histories]')].map((e) => e.clientWidth)")
+        self.assertGreater(min(widths), 0.85 * max(widths))  # of the panel
+        self.keep("studio-curves")
         page.show(".scene-host canvas")
         self.keep("studio-run")
 
@@ -132,15 +135,15 @@ class Flow(PageTest):
         self.wait("studio.view.poles && studio.view.poles.chart.frame")
         self.keep("studio-poles")
         poles = page.run("[studio.view.poles.poles.real, studio.view.poles.poles.imag]")
-        self.check_page(page)
-        self.assertTrue(all(url.startswith((self.address, "blob:", "data:")) or url.endswith("favicon.ico") for url in page.list_requests()))
-
         # The page has what is on the screen: the run and the poles.
         before = page.run(f"studio.find('{stem}-run.html').time")
         page.click("button.save-page")
         self.wait(f"studio.find('{stem}-run.html').time !== {json.dumps(before)}")
         self.assertIn('data-view="poles"', self.read(stem + "-run.html"))
         self.assertIn('data-view="motion"', self.read(stem + "-run.html"))
+        self.check_page(page)
+        self.assertTrue(all(url.startswith((self.address, "blob:", "data:")) or url.endswith("favicon.ico") for url in page.list_requests()))
+
         # The lines that the page shows, in another folder of the shell.
         page.click("button.copy")
         self.wait("document.querySelector('dialog textarea')")
@@ -172,6 +175,13 @@ class Flow(PageTest):
         self.wait("document.querySelector('.scene-host').dataset.pole === '0'")
         self.assertTrue(page.run("studio.view.motion.is_playing"))
         self.assertIn("Hz", page.run("document.querySelector('.work-column .picked').textContent"))
+        chosen = "document.querySelector('.pole-picker').selectedOptions[0].textContent"
+        self.assertEqual(page.run(chosen), page.run("document.querySelector('.work-column .picked').textContent").replace("shape of the pole ", ""))
+        # "no pole" ends the motion: the system at its start.
+        self.choose("move in the shape of", "no pole")
+        self.wait("document.querySelector('.scene-host').dataset.pole === undefined && !studio.view.motion.is_playing")
+        self.click_at(x, y)
+        self.wait("document.querySelector('.scene-host').dataset.pole === '0'")
         # It goes round and does not end.
         self.wait("(() => { const m = studio.view.motion; m.set_time(m.last); return m.is_playing; })()")
         self.choose("move in the shape of", "1.27")
@@ -182,29 +192,12 @@ class Flow(PageTest):
         self.wait("Number(studio.view.poles.chart.element.dataset.followed) >= 4")
         self.wait("!studio.view.poles.is_asking")
         gain = float(page.run("document.querySelector('[aria-label=\"parameter gain\"]').value"))
-        chosen = "document.querySelector('.pole-picker').selectedOptions[0].textContent"
-        self.assertEqual(page.run(chosen), page.run("document.querySelector('.work-column .picked').textContent").replace("shape of the pole ", ""))
-        # "no pole" ends the motion: the system at its start.
-        self.choose("move in the shape of", "no pole")
-        self.wait("document.querySelector('.scene-host').dataset.pole === undefined && !studio.view.motion.is_playing")
-        self.click_at(x, y)
-        self.wait("document.querySelector('.scene-host').dataset.pole === '0'")
         self.assertGreater(gain, 5)
         self.bough("linearize", "sliders.toml", "--set", f"gain={gain}", "-o", "shell.h5")
         with h5py.File(self.path("shell.h5")) as f:
             np.testing.assert_allclose(page.run("studio.view.poles.poles.imag"), f["/poles/imag"][:], rtol=1e-12)
             shown = page.run("[...studio.view.poles.picker.list.options].slice(1).map((o) => parseFloat(o.textContent))")
             np.testing.assert_allclose(shown, f["/poles/frequency_hz"][:][f["/poles/imag"][:] >= 0], rtol=1e-4)
-        # The last of two requests wins, though the answer to the first comes later.
-        page.run("""(async () => { const send = fetch; let count = 0;
-          window.fetch = (u, o) => (o.body.includes("pole-motion") && count++ === 0 ? new Promise((r) => setTimeout(r, 3000)).then(() => send(u, o)) : send(u, o));
-          await Promise.all([studio.view.poles.show(0), studio.view.poles.show(2)]); window.fetch = send; })()""")
-        self.assertEqual(page.run("document.querySelector('.scene-host').dataset.pole"), "2")
-        page.show(".result .live[data-view=poles]")
-        self.keep("studio-locus")
-
-        page.click("details.block-diagram summary")
-        self.wait("Number(document.querySelector('.diagram-host').dataset.blocks) > 5")
         # Above the table: its poles are those of the file. A click on a pole of now takes it, though one of then is below.
         self.assertIn(f"not with gain={gain:g}".rstrip("0"), page.run("document.querySelector('[data-panel=poles] .stale').textContent"))
         page.run("studio.view.poles.chart.element.scrollIntoView({ block: 'center' })")
@@ -216,6 +209,16 @@ class Flow(PageTest):
             self.wait(f"document.querySelector('.scene-host').dataset.pole === '{index}'")
             tip = page.run("document.querySelector('[data-view=poles] .tip').textContent")
             self.assertTrue(tip.startswith(page.run(f"studio.view.poles.poles.frequency[{k}].toPrecision(5).replace(/0+$/, '')")), tip)
+        # The last of two requests wins, though the answer to the first comes later.
+        page.run("""(async () => { const send = fetch; let count = 0;
+          window.fetch = (u, o) => (o.body.includes("pole-motion") && count++ === 0 ? new Promise((r) => setTimeout(r, 3000)).then(() => send(u, o)) : send(u, o));
+          await Promise.all([studio.view.poles.show(0), studio.view.poles.show(2)]); window.fetch = send; })()""")
+        self.assertEqual(page.run("document.querySelector('.scene-host').dataset.pole"), "2")
+        page.show(".result .live[data-view=poles]")
+        self.keep("studio-locus")
+
+        page.click("details.block-diagram summary")
+        self.wait("Number(document.querySelector('.diagram-host').dataset.blocks) > 5")
         page.show("svg.diagram")
         self.keep("studio-diagram")
         page.run("document.querySelector('svg.diagram [aria-label=\"controller pid\"]').focus()")

@@ -196,7 +196,13 @@ class Systems(PageTest):
         page.run("""(() => { const field = document.querySelector('[aria-label="parameter gain"]');
           field.value = "7"; field.dispatchEvent(new Event("change")); })()""")
         self.assertEqual(page.run("studio.view.list_set()"), ["gain=7"])
+        # The message of a failure goes when a later action succeeds.
+        page.click("input.command")
+        page.type("set nothing.x=1\n")
+        self.wait("document.querySelector('.toast.bad')")
+        page.run("document.querySelector('input.command').value = ''")
         self.command("set pid.kp=5.0")
+        self.wait("!document.querySelector('.toast.bad')")
         self.command("unset parameters.gain")
         self.wait("studio.view.set.size === 0")
 

@@ -6,7 +6,7 @@ import { Chart } from "./chart.js";
 import { DiagramPanels } from "./diagram_view.js";
 import { HingeAxes } from "./hinge_axes.js";
 import { HingePlaces } from "./hinge_places.js";
-import { HistoryView, RunSet } from "./history.js";
+import { HistoryView, RunSet, label_time, with_unit } from "./history.js";
 import { MotionView } from "./motion_view.js";
 import { el, make_button } from "./page_parts.js";
 import { FloatingScene, make_progress, show_history } from "./parts.js";
@@ -75,7 +75,7 @@ export class SystemView {
     if (answer.tree) this.hinge_places.update(answer.tree);
     this.diagrams.update();
     if (this.is_running || has_errors || this.text_drawn === this.pane.text) return;
-    const text = this.pane.text;
+    this.bodies = (answer.bodies ?? []).map((path) => this.studio.to_name(path));
     try {
       await this.show_start();
     } catch (error) {
@@ -188,7 +188,7 @@ export class SystemView {
    * @returns {Promise<boolean>}  true if there was one
    */
   async join() {
-    const found = await this.studio.attempt(() => find_job(this.file, ["run", "equilibrium", "linearize"]));
+    const found = await this.studio.attempt(() => find_job(this.file, ["run", "equilibrium", "linearize"]), false);
     if (!found || this.is_following) return Boolean(found);
     const { verb, options, before } = found.request, output = options.find(([name]) => name === "-o")[1];
     for (const [name, text] of options) if (name === "--set") this.set.set(text.slice(0, text.indexOf("=")), text.slice(text.indexOf("=") + 1));
@@ -216,7 +216,7 @@ export class SystemView {
       this.pane.messages.show(done.messages, "The run ended without a message.");
       await this.studio.refresh();
       const found = this.studio.find(this.output);
-      if (found) await this.show_results(found.time === before);
+      if (found) await this.show_results(found.time === before, done.code !== 0);
     } finally {
       this.is_following = this.is_running = false;
       live.end();
@@ -340,7 +340,7 @@ class LiveCharts {
     if (!channel) return;
     const series = channel.columns.map((column, i) => run.make_series(channel, i, column.name || channel.path));
     if (this.chart) return this.chart.set_series(series);
-    this.chart = new Chart({ title: channel.path.slice(1), series, x_label: "time", y_label: channel.columns[0].unit, height: 240 });
+    this.chart = new Chart({ title: channel.path.slice(1), series, x_label: label_time(run), y_label: with_unit(channel.path.slice(1), channel.columns[0].unit), height: 240 });
     this.view.result.replaceChildren(this.chart.element);
   }
   end() {
