@@ -14,7 +14,7 @@ export function make_body_form(studio, deck, on_change) {
   const grids = [];
   let frame = 0, basis = 0, joint = 0, is_picking = true;
   const list = el("output", { class: "chosen", "aria-label": "interface nodes" });
-  const number = el("input", { type: "number", min: 0, max: 1000, step: 1, placeholder: "as the deck", "aria-label": "number of modes" });
+  const number = el("input", { type: "number", min: 0, max: 1000, step: 1, placeholder: "of the deck", "aria-label": "number of modes" });
   const update = () => {
     list.replaceChildren(...(grids.length === 0 ? [el("span", { class: "note" }, "none: click grids, or find one by its id")] : grids.map((g) => make_button(`${g} ✕`, "Leave this grid out", () => {
       grids.splice(grids.indexOf(g), 1);
