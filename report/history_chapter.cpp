@@ -11,6 +11,7 @@
 
 #include "base/xml_text.hpp"
 #include "formats/records/signal_name.hpp"
+#include "report/deflection.hpp"
 #include "report/history_data.hpp"
 #include "report/html.hpp"
 #include "report/label.hpp"
@@ -132,11 +133,15 @@ std::string make_statistics(const History& h) {
 std::string make_histories(const History& h, const Strides& strides, Chapter& chapter) {
   std::string html;
   if (std::max(strides.first, strides.others) > 1)
-    html += make_text(fmt::format("To keep the page small the curves hold 1 of {} samples of sensors, hinges and "
-                                  "energies and 1 of {} of the others; tables are from all of them. --channel chooses "
-                                  "fewer channels.",
-                                  strides.first, strides.others),
-                      "note");
+    html += make_text(
+        fmt::format("To keep the page small the curves hold {} of sensors, hinges and energies, the smallest and the "
+                    "largest of each {} samples of bodies, reactions and masses, each at its time; the motion shows 1 "
+                    "of {} samples. Tables are from all samples. --channel chooses fewer channels.",
+                    strides.first > 1
+                        ? fmt::format("the smallest and the largest of each {} samples", 2 * strides.first)
+                        : "all samples",
+                    2 * strides.others, strides.others),
+        "note");
   html += "<div class=\"live\" data-view=\"history\">\n";
   std::vector<const HistoryChannel*> shown;
   const auto collect = [&](const auto& is_chosen) {
@@ -235,22 +240,6 @@ void add_events(const History& h, Chapter& chapter) {
   chapter.add_panel("events", "Events", table.to_html(500));
 }
 
-/// Largest displacement of a point of the body over some 400 samples, and its time.
-std::pair<double, double> find_deflection(const SceneBody& body, const HistoryChannel& eta,
-                                          const Eigen::VectorXd& time) {
-  std::pair<double, double> largest{0, 0};
-  const Eigen::Index n =
-      std::min<Eigen::Index>(eta.values.cols(), static_cast<Eigen::Index>(body.drawing.shapes.size()));
-  const Eigen::Index step = std::max<Eigen::Index>(1, time.size() / 400);
-  for (Eigen::Index i = 0; i < time.size(); i += step) {
-    Eigen::MatrixXd u = Eigen::MatrixXd::Zero(body.drawing.xyz.rows(), 3);
-    for (Eigen::Index j = 0; j < n; ++j) u += eta.values(i, j) * body.drawing.shapes[static_cast<std::size_t>(j)];
-    const double norm = u.rows() > 0 ? u.rowwise().norm().maxCoeff() : 0;
-    if (norm > largest.first) largest = {norm, time[i]};
-  }
-  return largest;
-}
-
 std::string with_unit(double value, const std::string& unit) {
   return format_value(value, 4) + (unit.empty() || unit == "1" ? "" : " " + unit);
 }
@@ -311,7 +300,9 @@ void add_checks(const History& h, Chapter& chapter) {
   for (const auto& body : h.scene.bodies) {
     const auto* eta = find_channel(h, "/bodies/" + body.name + "/eta");
     if (body.size <= 0 || !eta || eta->values.cols() == 0) continue;
-    const auto [largest, when] = find_deflection(body, *eta, h.time);
+    const auto [largest, sample] =
+        find_largest_deflection(body.all_shapes.empty() ? body.drawing.shapes : body.all_shapes, eta->values);
+    const double when = h.time.size() > 0 ? h.time[sample] : 0;
     const auto* position = find_channel(h, "/bodies/" + body.name + "/position");
     if (largest / body.size > largest_share) {
       largest_share = largest / body.size;

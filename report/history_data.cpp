@@ -1,10 +1,13 @@
 #include "report/history_data.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "formats/records/signal_name.hpp"
 #include "report/pack.hpp"
+#include "report/thin.hpp"
 
 namespace bough::report {
 
@@ -12,13 +15,24 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kBudget = 4.1e6;      // characters: 20,000 samples of 50 columns, and the page stays below 5 MB
-constexpr long kMinSamples = 1500;     // samples of the others, before the first ones are thinned
-constexpr double kCharactersEach = 4;  // of a packed sample
+constexpr double kBudget = 4.1e6;       // characters: 20,000 samples of 50 columns, and the page stays below 5 MB
+constexpr long kMinSamples = 1500;      // samples of the others, before the first ones are thinned
+constexpr double kCharactersEach = 4;   // of a packed sample
+constexpr double kIndexCharacters = 2;  // of its index, where samples are left out
 
 bool is_of_the_others(const std::string& path) {
   return path.starts_with("/bodies/") || path.starts_with("/system_mass/") ||
          path.find("/reaction_") != std::string::npos;
+}
+
+/// Channels of which the motion is drawn: all their columns are needed at the same times.
+std::set<std::string> list_moving(const History& history) {
+  std::set<std::string> paths;
+  for (const auto& body : history.scene.bodies)
+    for (const char* part : {"position", "quaternion", "eta"}) paths.insert("/bodies/" + body.name + "/" + part);
+  for (const auto& arrow : history.scene.arrows)
+    if (!arrow.channel.empty()) paths.insert(arrow.channel);
+  return paths;
 }
 
 Eigen::VectorXd take_every(const Eigen::Ref<const Eigen::VectorXd>& values, long stride) {
@@ -74,9 +88,46 @@ json make_list(const std::vector<T>& things) {
   return list;
 }
 
-json make_arrows(const std::vector<SceneArrow>& arrows, long stride) {
+json to_json(const PackedColumn& packed) { return {{"low", packed.low}, {"step", packed.step}, {"data", packed.data}}; }
+
+/// The smallest and the largest of each 2 `stride` samples, where they are, and means of all samples.
+json make_extremes(const Eigen::Ref<const Eigen::VectorXd>& values, long stride) {
+  const auto chosen = choose_extremes(values, 2 * stride);
+  const auto at = pack_ascending(chosen);
+  json extremes = to_json(pack_column(values(chosen)));
+  extremes.update({{"at", at.data}, {"digits", at.digits}});
+  double sum = 0, squares = 0, count = 0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    sum += v;
+    squares += v * v;
+    ++count;
+  }
+  extremes.update({{"mean", make_number(sum / count)}, {"rms", make_number(std::sqrt(squares / count))}});
+  extremes["count"] = count;
+  return extremes;
+}
+
+/// The largest size of the arrow of all samples, and its time.
+json find_largest(const SceneArrow& arrow, const History& history) {
+  const auto channel = std::find_if(history.channels.begin(), history.channels.end(),
+                                    [&](const auto& one) { return one.path == arrow.channel; });
+  Eigen::VectorXd sizes;
+  if (arrow.channel.empty())
+    sizes = arrow.values.cwiseAbs();
+  else if (channel != history.channels.end() && arrow.column < channel->values.cols())
+    sizes = arrow.column < 0 ? Eigen::VectorXd(channel->values.rowwise().norm())
+                             : Eigen::VectorXd(channel->values.col(arrow.column).cwiseAbs());
+  if (arrow.column >= 0 && !arrow.towards) sizes *= arrow.axes.col(0).norm();
+  double value = 0, time = 0;
+  for (Eigen::Index i = 0; i < std::min(sizes.size(), history.time.size()); ++i)
+    if (sizes[i] > value) value = sizes[i], time = history.time[i];
+  return {{"value", make_number(value)}, {"time", time}};
+}
+
+json make_arrows(const History& history, long stride) {
   json list = json::array();
-  for (const auto& arrow : arrows) {
+  for (const auto& arrow : history.scene.arrows) {
     json one{{"name", arrow.name},
              {"moment", arrow.is_moment},
              {"reaction", arrow.is_reaction},
@@ -86,11 +137,11 @@ json make_arrows(const std::vector<SceneArrow>& arrows, long stride) {
              {"axes", {to_list(arrow.axes.row(0)), to_list(arrow.axes.row(1)), to_list(arrow.axes.row(2))}},
              {"factor", arrow.factor},
              {"channel", arrow.channel},
-             {"column", arrow.column}};
+             {"column", arrow.column},
+             {"largest", find_largest(arrow, history)}};
     if (arrow.channel.empty()) {
-      const auto packed = pack_column(take_every(arrow.values, stride));
       one["stride"] = stride;
-      one["values"] = {{"low", packed.low}, {"step", packed.step}, {"data", packed.data}};
+      one["values"] = to_json(pack_column(take_every(arrow.values, stride)));
     }
     list.push_back(std::move(one));
   }
@@ -111,12 +162,20 @@ const std::vector<std::string>* find_mode_names(const History& history, const st
 }  // namespace
 
 Strides choose_strides(const History& history) {
-  double first = 0, others = 0;
-  for (const auto& channel : history.channels)
+  double first = 0, others = 0, moving = 0;
+  const auto paths = list_moving(history);
+  for (const auto& channel : history.channels) {
     (is_of_the_others(channel.path) ? others : first) += static_cast<double>(channel.values.cols());
-  const double samples = static_cast<double>(history.time.size()) * kCharactersEach;
+    if (paths.contains(channel.path)) moving += static_cast<double>(channel.values.cols());
+  }
+  const auto samples = static_cast<double>(history.time.size());
+  const auto calc_characters = [&](double columns, long stride) {
+    return columns * samples / static_cast<double>(stride) * (kCharactersEach + (stride > 1 ? kIndexCharacters : 0));
+  };
   const auto fits = [&](const Strides& s) {
-    return samples * (first / static_cast<double>(s.first) + others / static_cast<double>(s.others)) <= kBudget;
+    return calc_characters(first, s.first) + calc_characters(others, s.others) +
+               (s.others > 1 ? moving * samples * kCharactersEach / static_cast<double>(s.others) : 0) <=
+           kBudget;
   };
   Strides strides;
   while (!fits(strides) && history.time.size() / (strides.others + 1) >= kMinSamples) ++strides.others;
@@ -130,6 +189,7 @@ Strides choose_strides(const History& history) {
 
 std::string make_data(const History& history, const Strides& strides) {
   json channels = json::array();
+  const auto moving = list_moving(history);
   for (const auto& channel : history.channels) {
     const long stride = is_of_the_others(channel.path) ? strides.others : strides.first;
     const auto names =
@@ -138,13 +198,13 @@ std::string make_data(const History& history, const Strides& strides) {
     const bool is_labelled = modes && std::ssize(*modes) == channel.values.cols();
     json columns = json::array();
     for (Eigen::Index c = 0; c < channel.values.cols(); ++c) {
-      const auto packed = pack_column(take_every(channel.values.col(c), stride));
-      columns.push_back({{"name", names[static_cast<std::size_t>(c)]},
-                         {"unit", channel.get_unit(c)},
-                         {"noise", static_cast<bool>(channel.is_noise[static_cast<std::size_t>(c)])},
-                         {"low", packed.low},
-                         {"step", packed.step},
-                         {"data", packed.data}});
+      json column{{"name", names[static_cast<std::size_t>(c)]},
+                  {"unit", channel.get_unit(c)},
+                  {"noise", static_cast<bool>(channel.is_noise[static_cast<std::size_t>(c)])}};
+      if (stride == 1 || moving.contains(channel.path))
+        column.update(to_json(pack_column(take_every(channel.values.col(c), stride))));
+      if (stride > 1) column["extremes"] = make_extremes(channel.values.col(c), stride);
+      columns.push_back(std::move(column));
       if (is_labelled) columns.back()["label"] = (*modes)[static_cast<std::size_t>(c)];
     }
     channels.push_back({{"path", channel.path},
@@ -162,7 +222,7 @@ std::string make_data(const History& history, const Strides& strides) {
               {"bodies", make_list(history.scene.bodies)},
               {"hinges", make_list(history.scene.hinges)},
               {"sensors", make_list(history.scene.sensors)},
-              {"arrows", make_arrows(history.scene.arrows, strides.others)}}
+              {"arrows", make_arrows(history, strides.others)}}
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -6,8 +6,9 @@
 
 namespace bough::report {
 
-/// One of several samples is on the page, of channels that people read (sensors, hinges, energy ...) and of the others
-/// (bodies, reactions, mass): 1 where all fit.
+/// The page has the smallest and the largest of each 2 `first` samples of channels that people read (sensors, hinges,
+/// energy ...) and of each 2 `others` samples of the others (bodies, reactions, mass), and 1 of `others` samples of
+/// what the motion is drawn from; a stride of 1: all samples.
 struct Strides {
   long first = 1, others = 1;
 };

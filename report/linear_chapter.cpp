@@ -24,6 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxDiagrams = 6, kMaxPairs = 24;
+constexpr double kUndamped = 1e-7;  // damping ratio, below which rounding decides whether a pole decays
 
 std::string make_poles(const records::LinearModel& model) {
   Plot plot = make_pole_plot({{"", &model}});
@@ -172,6 +173,46 @@ json make_plane(const records::LinearModel& model) {
           {"notes", std::move(notes)}};
 }
 
+/// Three numbers that judge the model: stability, the pole with the smallest damping, a margin or the largest gain.
+void add_highlights(const records::LinearModel& model, const LinearFindings& findings, int unstable, Chapter& chapter) {
+  auto& highlights = chapter.highlights;
+  const std::string unit = records::name_frequency_unit(model.units.time);
+  const auto poles = round_poles(model.poles);
+  if (unstable > 0) highlights.push_back({"poles in the right half plane", std::to_string(unstable), ""});
+  Eigen::Index weakest = -1, lowest = -1;
+  for (Eigen::Index i = 0; i < poles.real.size(); ++i) {
+    if (records::is_gone(model, i) || !(poles.imag[i] > 0)) continue;
+    if (weakest < 0 || poles.damping[i] < poles.damping[weakest]) weakest = i;
+    if (lowest < 0 || poles.frequency_hz[i] < poles.frequency_hz[lowest]) lowest = i;
+  }
+  const auto get_mode = [&](Eigen::Index i) {
+    const auto& mode = poles.mode[static_cast<std::size_t>(i)];
+    return mode.empty() ? "" : ", " + mode;
+  };
+  const auto format_ratio = [&](Eigen::Index i) {
+    const bool is_undamped = std::abs(poles.damping[i]) <= kUndamped;
+    return (is_undamped ? "0" : format_value(100 * poles.damping[i], 3)) + " %";
+  };
+  if (weakest >= 0)
+    highlights.push_back({"smallest damping ratio", format_ratio(weakest),
+                          "at " + format_value(poles.frequency_hz[weakest], 5) + " " + unit + get_mode(weakest)});
+  const records::Crossing* margin = nullptr;
+  for (const auto& c : findings.margins.phase)
+    if (!margin || std::abs(c.margin) < std::abs(margin->margin)) margin = &c;
+  if (findings.has_margins && margin)
+    highlights.push_back({"smallest phase margin",
+                          format_value(margin->margin * 180 / std::numbers::pi, 4) + " degrees",
+                          "at " + format_value(margin->frequency_hz, 5) + " " + unit});
+  else if (!findings.response.value.empty())
+    highlights.push_back({"largest gain", findings.peak.is_finite ? format_value(findings.peak.value, 4) : "infinite",
+                          findings.peak.is_finite ? "at " + format_value(findings.peak.frequency_hz, 5) + " " + unit
+                                                  : findings.peak.why});
+  if (lowest >= 0 && lowest != weakest)
+    highlights.push_back({"lowest frequency", format_value(poles.frequency_hz[lowest], 5) + " " + unit,
+                          "damping ratio " + format_ratio(lowest) + get_mode(lowest)});
+  if (highlights.size() > 3) highlights.resize(3);
+}
+
 /// Pairs of the interactive Bode diagrams, with the marks of their margins.
 json list_pairs(const LinearFindings& findings, const std::vector<BodePair>& pairs_of) {
   json pairs = json::array();
@@ -203,19 +244,28 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
   Chapter chapter{"linear model", file, facts, {}, {}, {}, {}};
   int unstable = 0;
   double worst = 0;
+  std::string on_axis;
   const Eigen::VectorXd doubt = calc_pole_uncertainty(model.poles, 1e-6);
-  for (Eigen::Index i = 0; i < model.poles.real.size(); ++i)
-    if (model.poles.real[i] > doubt[i]) {
+  for (Eigen::Index i = 0; i < model.poles.real.size(); ++i) {
+    const double size = std::hypot(model.poles.real[i], model.poles.imag[i]);
+    if (model.poles.imag[i] > 0 && std::abs(model.poles.real[i]) <= kUndamped * size) {
+      if (std::abs(model.poles.real[i]) > doubt[i]) on_axis += (on_axis.empty() ? "" : ", ") + format_value(size, 5);
+    } else if (model.poles.real[i] > std::max(doubt[i], kUndamped * size)) {
       ++unstable;
       worst = std::max(worst, model.poles.real[i]);
     }
+  }
   chapter.checks.push_back({"poles in the right half plane", std::to_string(unstable),
                             unstable > 0 ? Verdict::Warning : Verdict::Good,
                             unstable > 0 ? "largest real part " + format_value(worst, 4) : ""});
+  if (!on_axis.empty())
+    chapter.checks.push_back({"poles on the imaginary axis, damping below 1e-7", "\u00b1 " + on_axis + " i",
+                              Verdict::None, "rounding decides the sign of their real part"});
   chapter.checks.push_back({"estimated relative error of A and C", format_value(model.error, 2),
                             model.error > 1e-5 ? Verdict::Warning : Verdict::Good, ""});
   chapter.checks.push_back({"rate of change |u̇| at the point", format_value(model.residual, 3), Verdict::None,
                             "0 at rest and in a steady spin"});
+  add_highlights(model, findings, unstable, chapter);
   chapter.add_panel("poles", "Poles and zeros", make_poles(model));
   const auto pairs_of = make_bode_pairs(findings.response, kMaxPairs);
   add_response(findings, pairs_of, chapter);

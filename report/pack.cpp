@@ -1,5 +1,6 @@
 #include "report/pack.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -8,8 +9,13 @@ namespace bough::report {
 
 static_assert(std::endian::native == std::endian::little, "the arrays of the page are little-endian");
 
+namespace {
+
+constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+}  // namespace
+
 std::string encode_base64(const void* data, std::size_t size) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   const auto* bytes = static_cast<const unsigned char*>(data);
   std::string text((size + 2) / 3 * 4, '=');
   std::size_t at = 0;
@@ -55,6 +61,22 @@ PackedColumn pack_column(const Eigen::Ref<const Eigen::VectorXd>& values) {
     for (const int shift : {16, 8, 0}) bytes.push_back(static_cast<unsigned char>(code >> shift));
   }
   packed.data = encode_base64(bytes.data(), bytes.size());
+  return packed;
+}
+
+PackedIndices pack_ascending(const std::vector<Eigen::Index>& indices) {
+  Eigen::Index largest = 0, before = 0;
+  for (const auto i : indices) {
+    largest = std::max(largest, i - before);
+    before = i;
+  }
+  PackedIndices packed;
+  while (packed.digits < 10 && largest >> (6 * packed.digits) > 0) ++packed.digits;
+  before = 0;
+  for (const auto i : indices) {
+    for (int k = packed.digits - 1; k >= 0; --k) packed.data += kDigits[(i - before) >> (6 * k) & 63];
+    before = i;
+  }
   return packed;
 }
 

@@ -22,6 +22,14 @@ struct PackedColumn {
 /// Packs samples so that 0 stays exact for a column with both signs.
 PackedColumn pack_column(const Eigen::Ref<const Eigen::VectorXd>& values);
 
+/// Ascending indices as differences, the first from zero: `digits` characters each of base 64, most significant first.
+struct PackedIndices {
+  int digits = 1;
+  std::string data;
+};
+/// Packs ascending indices in as few digits as the largest difference needs.
+PackedIndices pack_ascending(const std::vector<Eigen::Index>& indices);
+
 /// Little-endian 32-bit floats, 32-bit unsigned integers, 64-bit floats.
 std::string pack_floats(const Eigen::Ref<const Eigen::VectorXd>& values);
 std::string pack_indices(const std::vector<std::uint32_t>& values);

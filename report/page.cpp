@@ -10,7 +10,7 @@
 namespace bough::report {
 
 const char* get_word(Verdict verdict) {
-  constexpr std::array kWords{"ok", "look", "bad", "told"};
+  constexpr std::array kWords{"ok", "look", "bad", "info"};
   return kWords[static_cast<std::size_t>(verdict)];
 }
 

@@ -1,5 +1,7 @@
 #include "report/pole_plot.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -22,6 +24,9 @@ std::string format_damping(double zeta) {
   text.erase(text.find_last_not_of('0') + 1);
   return text;
 }
+
+/// "ω 20", in the unit of the axes.
+std::string format_size(double size) { return "\u03c9 " + fmt::format("{:g}", size); }
 
 /// Points drawn at one place, where one mark hides the others.
 void add_count(const Curve& curve, double x, double y, double radius, const std::string& what, Plot& plot) {
@@ -128,7 +133,7 @@ void add_s_grid(Plot& plot) {
       x[i] = -size * std::sin(angle);
       y[i] = size * std::cos(angle);
     }
-    add_guide(x, y, "", plot);
+    add_guide(x, y, format_size(size), plot);
   }
 }
 

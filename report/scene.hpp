@@ -14,7 +14,8 @@ namespace bough::report {
 struct SceneBody {
   std::string name;
   Drawing drawing;
-  std::vector<std::string> mode_names{};  ///< of a flexible body: "mode 3, 12.41 Hz"
+  std::vector<std::string> mode_names{};      ///< of a flexible body: "mode 3, 12.41 Hz"
+  std::vector<Eigen::MatrixXd> all_shapes{};  ///< as drawing.shapes, of every mode, if the drawing has fewer
   double size = 0;  ///< of the flexible body, against which deflections are held; 0: rigid or not known
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 namespace bough::report {
@@ -112,6 +113,33 @@ struct Ends {
   double map(double v) const { return (v - low) / (high - low); }
 };
 
+/// Labels of the rows: the ends of the axis; with `y_step` its multiples, and the ends move out to multiples.
+std::vector<std::string> make_row_labels(const Plot& plot, int height, Ends& y) {
+  std::vector<std::string> labels(static_cast<std::size_t>(height));
+  if (plot.y_step > 0 && !plot.has_log_y) {
+    double step = plot.y_step;
+    const auto round_out = [&] {
+      return std::pair(std::floor(y.low / step + 1e-9) * step, std::ceil(y.high / step - 1e-9) * step);
+    };
+    auto [low, high] = round_out();
+    while ((high - low) / step > 0.5 * height) {
+      step *= 2;
+      std::tie(low, high) = round_out();
+    }
+    if (high > low) {
+      y.low = low, y.high = high;
+      for (double value = low; value <= high + 0.5 * step; value += step) {
+        const auto row = std::lround((1 - y.map(value)) * (4 * height - 1)) / 4;
+        labels[static_cast<std::size_t>(std::clamp<long>(row, 0, height - 1))] = format_end(value, false);
+      }
+      return labels;
+    }
+  }
+  labels.back() = format_end(y.low, plot.has_log_y);
+  labels.front() = format_end(y.high, plot.has_log_y);
+  return labels;
+}
+
 }  // namespace
 
 std::string draw_text(const Plot& given, int width, int height, bool has_color) {
@@ -124,8 +152,10 @@ std::string draw_text(const Plot& given, int width, int height, bool has_color) 
   if (plot.y_max > plot.y_min) y.low = plot.y_min, y.high = plot.y_max;
   x.open();
   y.open();
-  const std::string top = format_end(y.high, plot.has_log_y), bottom = format_end(y.low, plot.has_log_y);
-  const int margin = static_cast<int>(std::max(top.size(), bottom.size()));
+  const auto labels = make_row_labels(plot, height, y);
+  std::size_t widest = 0;
+  for (const auto& label : labels) widest = std::max(widest, label.size());
+  const int margin = static_cast<int>(widest);
   const int columns = std::max(10, width - margin - 2);
   Canvas canvas(columns, height);
   for (std::size_t c = 0; c < plot.curves.size(); ++c) {
@@ -157,7 +187,7 @@ std::string draw_text(const Plot& given, int width, int height, bool has_color) 
               cut_text(plot.curves[c].label, width - 3) + "\n";
   for (const auto& note : plot.notes) text += cut_text(note.text, width) + "\n";
   for (int row = 0; row < height; ++row) {
-    const std::string label = row == 0 ? top : row == height - 1 ? bottom : "";
+    const std::string& label = labels[static_cast<std::size_t>(row)];
     text += std::string(static_cast<std::size_t>(margin) - label.size(), ' ') + label +
             (label.empty() ? "\u2502" : "\u2524") + canvas.take_row(row, has_color) + "\n";
   }

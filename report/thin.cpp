@@ -1,6 +1,7 @@
 #include "report/thin.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace bough::report {
@@ -19,6 +20,31 @@ std::vector<Eigen::Index> split_samples(const Eigen::VectorXd& x, Eigen::Index p
     if (find_part(i) != find_part(i - 1)) ends.push_back(i);
   if (n > 0) ends.push_back(n);
   return ends;
+}
+
+std::vector<Eigen::Index> choose_extremes(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index length) {
+  const Eigen::Index n = values.size();
+  std::vector<Eigen::Index> chosen;
+  const auto add = [&](Eigen::Index i) {
+    if (i >= 0 && (chosen.empty() || chosen.back() < i)) chosen.push_back(i);
+  };
+  if (n > 0) add(0);
+  for (Eigen::Index from = 0; from < n; from += length) {
+    Eigen::Index low = -1, high = -1, gap = -1;
+    for (Eigen::Index i = from; i < std::min(n, from + length); ++i) {
+      if (!std::isfinite(values[i])) {
+        if (gap < 0) gap = i;
+        continue;
+      }
+      if (low < 0 || values[i] < values[low]) low = i;
+      if (high < 0 || values[i] > values[high]) high = i;
+    }
+    std::array<Eigen::Index, 3> found{low, high, gap};
+    std::sort(found.begin(), found.end());
+    for (const auto i : found) add(i);
+  }
+  add(n - 1);
+  return chosen;
 }
 
 }  // namespace bough::report

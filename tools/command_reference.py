@@ -10,6 +10,8 @@ import subprocess
 import sys
 import textwrap
 
+from generated_page import write_or_check
+
 PAGE = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "docs", "commands.md")
 HEAD = """# Options of every command
 
@@ -105,16 +107,9 @@ def make_page(program):
 
 def main():
     program = sys.argv[1]
-    page = make_page(program)
-    if sys.argv[2:] != ["--check"]:
-        with open(PAGE, "w") as f:
-            f.write(page)
-        return 0
-    with open(PAGE) as f:
-        if f.read() == page:
-            return 0
-    print(f"{PAGE} is not what the program prints; run: tools/command_reference.py {program}", file=sys.stderr)
-    return 1
+    return write_or_check(PAGE, make_page(program),
+                          f"is not what the program prints; run: tools/command_reference.py {program}",
+                          sys.argv[2:] == ["--check"])
 
 
 if __name__ == "__main__":

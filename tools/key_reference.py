@@ -8,6 +8,8 @@ import json
 import os
 import sys
 
+from generated_page import write_or_check
+
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PAGE = os.path.join(ROOT, "docs", "formats", "keys.md")
 KINDS = [("system", "system-toml.md"), ("body", "body-toml.md"), ("campaign", "campaign-toml.md")]
@@ -96,16 +98,8 @@ def make_page():
 
 
 def main():
-    page = make_page()
-    if sys.argv[1:] != ["--check"]:
-        with open(PAGE, "w") as f:
-            f.write(page)
-        return 0
-    with open(PAGE) as f:
-        if f.read() == page:
-            return 0
-    print(f"{PAGE} is not what the schemas contain; run: tools/key_reference.py", file=sys.stderr)
-    return 1
+    return write_or_check(PAGE, make_page(), "is not what the schemas contain; run: tools/key_reference.py",
+                          sys.argv[1:] == ["--check"])
 
 
 if __name__ == "__main__":

@@ -15,19 +15,22 @@ def calc_minimum(t, y):
     return y[i] - b * b / (4 * a), t[i] - b / (2 * a)
 
 
-def calc_numbers(spinup_file, no_kg_file, body_file):
-    """{name: number} of two results files and the flexible-body file they ran with."""
+def calc_numbers(spinup_file, no_kg_file, body_file, third_order_file):
+    """{name: number} of two results files, the flexible-body file they ran with, and the results of third order."""
     with h5py.File(spinup_file) as f:
         t, d = f["/time"][:], f["/sensors/tip_deflection"][:]
     with h5py.File(no_kg_file) as f:
         t0, d0 = f["/time"][:], f["/sensors/tip_deflection"][:]
     with h5py.File(body_file) as f:
         omega = np.sqrt(f["/modes/eigenvalue"][:3])
+    with h5py.File(third_order_file) as f:
+        minimum_order_3, _ = calc_minimum(f["/time"][:], f["/sensors/tip_deflection"][:, 1])
     minimum, when = calc_minimum(t, d[:, 1])
     after = d[t > 15.0, 1]
     return {
         "frequencies_rad_s": omega.tolist(),
         "minimum": minimum,
+        "minimum_order_3": minimum_order_3,
         "time_of_minimum": when,
         "at_7_5": float(np.interp(7.5, t, d[:, 1])),
         "residual_amplitude": 0.5 * (after.max() - after.min()),

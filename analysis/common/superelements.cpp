@@ -8,6 +8,7 @@
 #include <set>
 
 #include "analysis/listing/recovery_rows.hpp"
+#include "fe/cards/temperature_set.hpp"
 #include "fe/linear/petsc.hpp"
 #include "fe/loads/loads.hpp"
 #include "fe/loads/second_order.hpp"
@@ -291,6 +292,28 @@ class PartReducer {
     return {};
   }
 
+  /// Selects the temperatures at which materials of the section are evaluated: its cards of the set. False after an
+  /// error.
+  bool select_material_temperature(const Deck& part, const DeckSection& section, records::Subcase& subcase) {
+    if (part.temperatures.materials.empty()) return true;
+    const int errors = diagnostics_.num_errors();
+    subcase.material_temperature = choose_set(
+        section,
+        [](const auto& one) {
+          return one.material_temperature != 0 ? one.material_temperature : one.initial_temperature;
+        },
+        "temperature sets of the materials");
+    if (diagnostics_.num_errors() > errors) return false;
+    const int set = subcase.material_temperature;
+    if (set == 0 || !fe::TemperatureSet(part.temperatures, set).is_empty()) return true;
+    error("fe.part-temperature", section.at,
+          fmt::format("superelement {} has no TEMP, TEMPD, TEMPRB or TEMPP1 card of temperature set {}, at which its "
+                      "materials are evaluated",
+                      section.id, set),
+          "add the cards to its section: those of the main bulk data heat the grids of the main bulk data");
+    return false;
+  }
+
   void condense(const Deck& part, const DeckSection& section, Superelement& s) {
     linear::initialize_petsc();
     Deck constrained = part;
@@ -308,6 +331,7 @@ class PartReducer {
         choose_set(section, [&](const auto& one) { return has_set(part.spc, part.spcadd, one.spc) ? one.spc : 0; });
     subcase.mpc =
         choose_set(section, [&](const auto& one) { return has_set(part.mpc, part.mpcadd, one.mpc) ? one.mpc : 0; });
+    if (!select_material_temperature(part, section, subcase)) return;
     const auto model = fe::build_model(constrained, {}, diagnostics_);
     const fe::System system(model);
     std::vector<int> grids;
@@ -624,7 +648,7 @@ class PartReducer {
 
   /// The set of constraints of the section that the subcases select; they may not select several.
   template <class Get>
-  int choose_set(const DeckSection& section, const Get& get) {
+  int choose_set(const DeckSection& section, const Get& get, const char* kind = "constraint sets") {
     // Subcases of SUPER = n are of the section alone.
     const auto& own = section.deck->subcases;
     const bool has_own = std::any_of(own.begin(), own.end(), [](const auto& subcase) { return subcase.id > 0; });
@@ -633,7 +657,7 @@ class PartReducer {
       if (const int set = get(subcase)) sets.insert(set);
     if (sets.size() > 1)
       error("fe.part-boundary", section.at,
-            fmt::format("the subcases select constraint sets {} and {} of superelement {}, which is condensed once",
+            fmt::format("the subcases select {} {} and {} of superelement {}, which is condensed once", kind,
                         *sets.begin(), *sets.rbegin(), section.id),
             "give the section one set, and analyze the others in another deck");
     return sets.empty() ? 0 : *sets.begin();

@@ -76,7 +76,9 @@ std::string make_diff(const std::string& before, const std::string& after, const
       num_new += lines[k].mark != '-';
     }
     if (text.empty()) text = fmt::format("--- {0}\n+++ {0}\n", name);
-    text += fmt::format("@@ -{},{} +{},{} @@\n{}", old_line, num_old, new_line, num_new, hunk);
+    // An empty range has the line before it, as in diff -u.
+    text += fmt::format("@@ -{},{} +{},{} @@\n{}", num_old == 0 ? old_line - 1 : old_line, num_old,
+                        num_new == 0 ? new_line - 1 : new_line, num_new, hunk);
     old_line += num_old;
     new_line += num_new;
     i = end;

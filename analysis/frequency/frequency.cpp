@@ -65,6 +65,17 @@ void note_random(const records::DynamicDeck& deck, const std::vector<records::Dy
                      "RANDOM has no effect on a transient response", "use 'bough frequency' for the random response");
 }
 
+/// Notes requests of results that responses do not have.
+void note_unlisted_requests(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
+  records::CaseRequests requests;
+  requests.selections = deck.selections;
+  for (const char* command : {"STRAIN", "GPSTRESS", "STRFIELD"})
+    if (asks_for(requests, command))
+      diagnostics.note("cli.request-by-option", deck.locate({}),
+                       std::string("the deck requests ") + command + ", which responses do not have",
+                       "write STRESS = ALL; bough static and modes list it");
+}
+
 }  // namespace
 
 DeckResponseAnswer solve_deck_response(const DeckResponseRequest& request, Events& events) {
@@ -88,6 +99,7 @@ DeckResponseAnswer solve_deck_response(const DeckResponseRequest& request, Event
     own.throw_if_errors();
   });
   note_solution(deck, diagnostics);
+  note_unlisted_requests(deck, diagnostics);
   if (subcases.empty()) {  // build_model() reports it
     subcases.emplace_back();
     subcases.back().id = request.model.subcase;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 
 #include "analysis/linearize/operating_point.hpp"
 #include "base/platform.hpp"
@@ -51,13 +52,13 @@ class Corners {
   }
 
  private:
-  /// A body with uncertain modal coordinates, as a separate file.
+  /// A body with uncertain modal coordinates: copies of its file, or of the files of all its fill levels.
   struct UncertainBody {
-    std::string name, file;
-    records::FlexBody flex;  ///< with the damping that the body has in the system
-  };
+    std::string name;
+    std::map<std::string, records::FlexBody> flex;  ///< by file; with the damping that the body has in the system
 
-  static std::string name_file(const UncertainBody& body) { return body.file + "#" + body.name; }
+    std::string name_copy(const std::string& file) const { return file + "#" + name; }
+  };
 
   void add_body(const UncertainRange& range, const LoadedSystem& base) {
     if (range.body.empty()) return;
@@ -76,12 +77,19 @@ class Corners {
     if (find(range.body) != nullptr) return;
     const auto record = std::find_if(base.spec.bodies.begin(), base.spec.bodies.end(),
                                      [&](const auto& r) { return r.name == range.body; });
-    UncertainBody body{range.body, record->file, base.flex.at(record->file)};
-    const auto& inertia = system.tree[b].body;
-    const auto n = inertia.num_modes();
-    if (body.flex.modal_damping.size() == 0)
-      body.flex.modal_damping = Eigen::MatrixXd::Zero(body.flex.num_modes(), body.flex.num_modes());
-    body.flex.modal_damping.topLeftCorner(n, n) = inertia.D();
+    UncertainBody body{range.body, {}};
+    auto files = record->levels;
+    if (files.empty()) files = {record->file};
+    for (const auto& file : files) {
+      auto flex = base.flex.at(file);
+      const auto in_system =
+          solver::Body::make_flexible(flex, record->num_modes, record->stiffening, record->damping_ratios);
+      const auto n = in_system.num_modes();
+      if (flex.modal_damping.size() == 0)
+        flex.modal_damping = Eigen::MatrixXd::Zero(flex.num_modes(), flex.num_modes());
+      flex.modal_damping.topLeftCorner(n, n) = in_system.D();
+      body.flex.emplace(file, std::move(flex));
+    }
     bodies_.push_back(std::move(body));
   }
 
@@ -100,20 +108,21 @@ class Corners {
         options.set.push_back(
             fmt::format("{}={:.17g}", ranges_[i].name, values.empty() ? get_middle(ranges_[i]) : values[i]));
     if (values.empty()) return options;
-    for (const auto& body : bodies_) {
-      auto flex = body.flex;
-      for (std::size_t i = 0; i < ranges_.size(); ++i) {
-        if (ranges_[i].body != body.name) continue;
-        const auto k = ranges_[i].mode - 1;
-        (ranges_[i].kind == "damping" ? flex.modal_damping : flex.modal_stiffness)(k, k) *= values[i];
+    for (const auto& body : bodies_)
+      for (auto [file, flex] : body.flex) {
+        for (std::size_t i = 0; i < ranges_.size(); ++i) {
+          if (ranges_[i].body != body.name) continue;
+          const auto k = ranges_[i].mode - 1;
+          (ranges_[i].kind == "damping" ? flex.modal_damping : flex.modal_stiffness)(k, k) *= values[i];
+        }
+        options.flex[body.name_copy(file)] = std::move(flex);
       }
-      options.flex[name_file(body)] = std::move(flex);
-    }
     options.change_spec = [this](records::SystemSpec& spec) {
       if (load_.change_spec) load_.change_spec(spec);
       for (auto& record : spec.bodies)
         if (const auto* body = find(record.name)) {
-          record.file = name_file(*body);
+          record.file = body->name_copy(record.file);
+          for (auto& level : record.levels) level = body->name_copy(level);
           record.damping_ratios.clear();
         }
     };

@@ -6,6 +6,8 @@
 #include <map>
 #include <numeric>
 
+#include "formats/records/group_names.hpp"
+
 namespace bough::analysis {
 namespace {
 
@@ -16,7 +18,7 @@ using Eigen::VectorXd;
 const std::map<std::string, int>& list_types() {
   static const std::map<std::string, int> types{
       {"CROD", 1},    {"CBEAM", 2},   {"CTUBE", 3}, {"CONROD", 10}, {"CELAS1", 11}, {"CELAS2", 12}, {"CELAS3", 13},
-      {"CELAS4", 14}, {"CQUAD4", 33}, {"CBAR", 34}, {"CTRIA3", 74}, {"CBUSH", 102}, {"CFAST", 126}};
+      {"CELAS4", 14}, {"CQUAD4", 33}, {"CBAR", 34}, {"CTRIA3", 74}, {"CBUSH", 102}, {"CWELD", 117}, {"CFAST", 126}};
   return types;
 }
 
@@ -65,6 +67,14 @@ VectorXd make_bar_row(const Eigen::Ref<const Eigen::RowVectorXd>& f) {
   return values;
 }
 
+/// Row of a weld in the columns of a bar; its core is a beam, or springs ("force_x" to "moment_z").
+VectorXd make_weld_row(const Eigen::Ref<const Eigen::RowVectorXd>& f) {
+  if (f.size() != 6) return make_bar_row(f);
+  VectorXd values(8);
+  values << f(5), -f(4), f(5), -f(4), f(1), f(2), f(0), f(3);
+  return values;
+}
+
 /// Both ends: M1 M2 V1 V2 axial torque, and the torque of warping, which this element has not. `loads`: along the beam,
 /// forces x y z and moment x, by which those at end B are less.
 VectorXd make_beam_row(const Eigen::Ref<const Eigen::RowVectorXd>& f, const Eigen::Vector4d& loads) {
@@ -100,10 +110,11 @@ ElementIndex index_elements(const fe::Model& model) {
 std::optional<records::ListedElements> make_listed_forces(const fe::Model& model, const ElementIndex& elements,
                                                           const records::ElementForces& forces, const BeamLoads& loads,
                                                           const std::function<bool(int)>& is_wanted) {
-  const auto type = list_types().find(forces.card);
+  const std::string card = records::get_card_of_group(forces.card);
+  const auto type = list_types().find(card);
   if (type == list_types().end()) return std::nullopt;
   records::ListedElements block;
-  block.card = forces.card;
+  block.card = card;
   block.type = type->second;
   std::vector<std::size_t> rows;
   for (std::size_t k = 0; k < forces.id.size(); ++k)
@@ -115,6 +126,8 @@ std::optional<records::ListedElements> make_listed_forces(const fe::Model& model
     VectorXd values = forces.force.row(row).transpose();
     if (block.card == "CBAR") {
       values = make_bar_row(forces.force.row(row));
+    } else if (block.card == "CWELD") {
+      values = make_weld_row(forces.force.row(row));
     } else if (block.card == "CBEAM") {
       const auto own = loads.find(id);
       values = make_beam_row(forces.force.row(row), own == loads.end() ? Eigen::Vector4d::Zero() : own->second);

@@ -19,7 +19,7 @@ using ElementIndex = std::map<std::pair<std::string, int>, const fe::Element*>;
 ElementIndex index_elements(const fe::Model& model);
 
 /// The elements of `forces` that `is_wanted` names; none where Nastran's table of that card is not written.
-/// CBAR: M1 M2 of end A, of end B, V1 V2, axial, torque, with M1 = Mz, M2 = -My of the section at x. Shells: the
+/// CBAR, CWELD: M1 M2 of end A, of end B, V1 V2, axial, torque, with M1 = Mz, M2 = -My of the section at x. Shells: the
 /// mean over the element, as that of the stresses, moments with Nastran's sign, -∫σ z dz, in Nastran's element axes.
 std::optional<records::ListedElements> make_listed_forces(const fe::Model& model, const ElementIndex& elements,
                                                           const records::ElementForces& forces, const BeamLoads& loads,

@@ -10,6 +10,7 @@
 #include "analysis/common/ranks.hpp"
 #include "analysis/common/superelements.hpp"
 #include "analysis/listing/element_columns.hpp"
+#include "analysis/listing/grid_stresses.hpp"
 #include "fe/loads/load_sets.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
@@ -102,12 +103,25 @@ void ListingMaker::report_sets(Diagnostics& diagnostics) const {
   std::set<std::string> known;
   for (const auto& [id, selection] : requests_.selections)
     for (const auto& [command, request] : selection.outputs) {
-      if (request.is_all || request.is_none || selection.sets.count(request.set) > 0) continue;
+      const bool of_fields = command == "GPSTRESS" || command == "STRFIELD";
+      if (of_fields && !request.is_none && requests_.stress_fields.empty() && known.insert(command).second)
+        diagnostics.warning("cli.missing-set", deck_.locate(request.at),
+                            command + " lists surfaces and volumes, of which the case control has none",
+                            "write OUTPUT(POST), SET 9 = elements and SURFACE 1 SET 9 NORMAL X3");
+      if (request.is_all || request.is_none) continue;
+      if (of_fields ? requests_.post_sets.contains(request.set) : selection.sets.contains(request.set)) continue;
       const auto text = fmt::format("{} = {} names a SET that the case control does not define", command, request.set);
       if (known.insert(text).second)
         diagnostics.error("cli.missing-set", deck_.locate(request.at), text,
-                          fmt::format("write SET {} = ids, or {} = ALL", request.set, command));
+                          fmt::format("write SET {} = ids{}, or {} = ALL", request.set,
+                                      of_fields ? " of surfaces and volumes after OUTPUT(POST)" : "", command));
     }
+  for (const auto& field : requests_.stress_fields)
+    if (field.set != 0 && !requests_.post_sets.contains(field.set))
+      diagnostics.error("cli.missing-set", deck_.locate(field.at),
+                        fmt::format("{} {} names SET {}, which OUTPUT(POST) does not define",
+                                    field.is_volume ? "VOLUME" : "SURFACE", field.id, field.set),
+                        fmt::format("write SET {} = elements after OUTPUT(POST)", field.set));
 }
 
 std::optional<int> ListingMaker::find_effective_mass_grid(int subcase) const {
@@ -121,10 +135,10 @@ std::optional<ListingMaker::Choice> ListingMaker::choose(int subcase, const std:
   if (selection == nullptr) return std::nullopt;
   const auto request = selection->outputs.find(command);
   if (request == selection->outputs.end() || request->second.is_none) return std::nullopt;
-  if (request->second.is_all) return Choice{nullptr, request->second.is_printed};
+  if (request->second.is_all) return Choice{nullptr, request->second.is_printed, request->second.is_fibre};
   const auto set = selection->sets.find(request->second.set);
   if (set == selection->sets.end()) return std::nullopt;
-  return Choice{&set->second, request->second.is_printed};
+  return Choice{&set->second, request->second.is_printed, request->second.is_fibre};
 }
 
 ListedStep ListingMaker::make_step(int subcase) const {
@@ -223,17 +237,82 @@ BeamLoads ListingMaker::sum_beam_loads(const fe::Model& model, const records::St
   return sums;
 }
 
+void ListingMaker::add_bushes(const ElementIndex& elements, const std::vector<records::ElementForces>& forces,
+                              const Eigen::Ref<const VectorXd>& u_g, ListedStep& step) const {
+  using enum records::PointTable;
+  for (const auto& [command, blocks] :
+       {std::pair("STRESS", &ListedStep::stresses), std::pair("STRAIN", &ListedStep::strains)}) {
+    const bool of_strain = blocks == &ListedStep::strains;
+    const auto choice = choose(step.subcase, command);
+    if (!choice || (of_strain && lists_all_)) continue;
+    for (const auto& of_card : forces) {
+      auto block = make_listed_bushes(
+          elements, deck_, of_card, u_g, [&](int id) { return choice->contains(id); },
+          of_strain ? FibreStrain : Stress);
+      if (!block || block->id.empty()) continue;
+      block->is_printed = choice->is_printed;
+      (step.*blocks).push_back(std::move(*block));
+    }
+  }
+}
+
+void ListingMaker::add_grid_stresses(const fe::Model& model, const ElementIndex& elements,
+                                     const std::vector<records::ElementForces>& forces, ListedStep& step,
+                                     Diagnostics& diagnostics) {
+  if (lists_all_) return;
+  const auto* selection = find_selection(requests_, step.subcase);
+  if (selection == nullptr) return;
+  for (const auto& field : requests_.stress_fields) {
+    bool is_selected = false, is_printed = false;
+    for (const char* command : {"GPSTRESS", "STRFIELD"}) {
+      const auto request = selection->outputs.find(command);
+      if (request == selection->outputs.end() || request->second.is_none) continue;
+      const auto set = requests_.post_sets.find(request->second.set);
+      if (!request->second.is_all && (set == requests_.post_sets.end() || !set->second.contains(field.id))) continue;
+      is_selected = true;
+      is_printed = is_printed || (command == std::string("GPSTRESS") && request->second.is_printed);
+    }
+    if (!is_selected) continue;
+    const auto members = requests_.post_sets.find(field.set);
+    std::set<std::string> skipped;
+    auto block = calc_grid_stresses(
+        model, elements, deck_, field, forces, [&](int id) { return field.set == 0 || members->second.contains(id); },
+        skipped);
+    for (const auto& card : skipped) note_unlisted("grid point stresses of " + card, diagnostics);
+    block.is_printed = is_printed;
+    step.grid_stresses.push_back(std::move(block));
+  }
+}
+
+void ListingMaker::add_strains(const fe::Model& model, const ElementIndex& elements,
+                               const std::vector<records::ElementStresses>& strains,
+                               const std::vector<records::ElementForces>& forces, ListedStep& step,
+                               Diagnostics& diagnostics) {
+  const auto choice = choose(step.subcase, "STRAIN");
+  if (lists_all_ || !choice) return;
+  using enum records::PointTable;
+  for (const auto& of_card : strains) {
+    auto block = make_listed_stresses(
+        model, elements, deck_, of_card, forces, limits_, [&](int id) { return choice->contains(id); },
+        choice->is_fibre ? FibreStrain : CurvatureStrain);
+    if (block)
+      block->is_printed = choice->is_printed;
+    else
+      note_unlisted("strains of " + of_card.card, diagnostics);
+    if (block && !block->id.empty()) step.strains.push_back(std::move(*block));
+  }
+}
+
 void ListingMaker::add_stresses(const fe::Model& model, const ElementIndex& elements,
                                 const std::vector<records::ElementStresses>& stresses,
                                 const std::vector<records::ElementForces>& forces, ListedStep& step,
                                 Diagnostics& diagnostics) {
-  if (!lists_all_ && choose(step.subcase, "STRAIN")) note_unlisted("strains (STRAIN)", diagnostics);
   const auto choice = choose(step.subcase, "STRESS");
   if (!choice) return;
   for (const auto& of_card : forces)
-    if (records::get_card_of_group(of_card.card).starts_with("CBUSH") && left_out_.insert("CBUSH").second)
+    if (records::get_card_of_group(of_card.card) == "CBUSH1D" && left_out_.insert("CBUSH1D").second)
       diagnostics.note("cli.unlisted-elements", deck_.locate({}), "the listing has no stresses of " + of_card.card,
-                       "write FORCE = ALL: they are its forces times the recovery coefficients of PBUSH");
+                       "write FORCE = ALL: its force is listed");
   for (const auto& of_card : stresses) {
     auto block = make_listed_stresses(model, elements, deck_, of_card, forces, limits_,
                                       [&](int id) { return choice->contains(id); });
@@ -293,6 +372,9 @@ void ListingMaker::add_static(const fe::Model& model, const records::StaticSubca
   const auto elements = index_elements(model);
   add_elements(model, elements, solved.elements, sum_beam_loads(model, solved), step, diagnostics);
   add_stresses(model, elements, solved.stresses, solved.elements, step, diagnostics);
+  add_strains(model, elements, solved.strains, solved.elements, step, diagnostics);
+  add_bushes(elements, solved.elements, solved.displacement, step);
+  add_grid_stresses(model, elements, solved.elements, step, diagnostics);
   add_energies(solved.elements, solved.strain_energy, step);
   add_grid_forces(model, solved.grid_forces, step);
   listing_.steps.push_back(std::move(step));
@@ -354,11 +436,15 @@ void ListingMaker::add_shapes(const fe::Model& model, const modal::EigenPairs& p
   const int subcase = roots.subcase;
   ListedStep step;
   static_cast<records::ListedHeading&>(step) = roots;
-  if (!lists_all_ && choose(subcase, "STRAIN")) note_unlisted("strains (STRAIN)", diagnostics);
   const bool has_reactions = reactions && choose(subcase, "SPCFORCES").has_value();
   const bool has_forces = choose(subcase, "FORCE").has_value(), has_stresses = choose(subcase, "STRESS").has_value();
   const bool has_energies = !lists_all_ && choose(subcase, "ESE").has_value();
-  const auto elements = has_forces || has_stresses ? index_elements(model) : ElementIndex{};
+  const bool has_strains = !lists_all_ && choose(subcase, "STRAIN").has_value();
+  const auto* selection = lists_all_ ? nullptr : find_selection(requests_, subcase);
+  const bool has_grid_stresses =
+      selection && (selection->outputs.contains("GPSTRESS") || selection->outputs.contains("STRFIELD"));
+  const auto elements =
+      has_forces || has_stresses || has_strains || has_grid_stresses ? index_elements(model) : ElementIndex{};
   for (Index j = 0; j < pairs.lambda.size(); ++j) {
     ListedStep mode = step;
     mode.kind = ListedStep::Kind::Mode;
@@ -370,12 +456,17 @@ void ListingMaker::add_shapes(const fe::Model& model, const modal::EigenPairs& p
       VectorXd reaction = fe::calc_reactions(model, reactions(j));
       add_vector(model, "SPCFORCES", ListedKind::SpcForce, reaction, mode);
     }
-    if (has_forces || has_stresses || has_energies) {
+    if (has_forces || has_stresses || has_energies || has_strains || has_grid_stresses) {
       const auto forces = fe::calc_element_forces(model, pairs.Phi.col(j), deck_, 0, diagnostics);
       add_elements(model, elements, forces, {}, mode, diagnostics);
       if (has_stresses)
         add_stresses(model, elements, fe::calc_element_stresses(model, pairs.Phi.col(j), deck_, 0), forces, mode,
                      diagnostics);
+      if (has_strains)
+        add_strains(model, elements, fe::calc_element_strains(model, pairs.Phi.col(j), deck_, 0), forces, mode,
+                    diagnostics);
+      if (has_stresses || has_strains) add_bushes(elements, forces, pairs.Phi.col(j), mode);
+      if (has_grid_stresses) add_grid_stresses(model, elements, forces, mode, diagnostics);
       add_energies(forces, 0.5 * roots.stiffness(j), mode);
     }
     listing_.steps.push_back(std::move(mode));

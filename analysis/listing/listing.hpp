@@ -58,6 +58,7 @@ class ListingMaker {
   struct Choice {
     const records::CaseSet* set = nullptr;  ///< nullptr: all
     bool is_printed = true;
+    bool is_fibre = false;  ///< STRAIN(FIBER)
     /// Returns true if the request includes the grid or element `id`; a request without a set includes all.
     bool contains(int id) const { return set == nullptr || set->contains(id); }
   };
@@ -76,6 +77,19 @@ class ListingMaker {
                     const std::vector<records::ElementStresses>& stresses,
                     const std::vector<records::ElementForces>& forces, records::ListedStep& step,
                     Diagnostics& diagnostics);
+  /// Stresses or strains of CBUSH by the recovery coefficients of their PBUSH. \param u_g  displacements of the
+  /// strains.
+  void add_bushes(const ElementIndex& elements, const std::vector<records::ElementForces>& forces,
+                  const Eigen::Ref<const Eigen::VectorXd>& u_g, records::ListedStep& step) const;
+  /// Grid point stresses of the SURFACEs and VOLUMEs that GPSTRESS and STRFIELD select.
+  void add_grid_stresses(const fe::Model& model, const ElementIndex& elements,
+                         const std::vector<records::ElementForces>& forces, records::ListedStep& step,
+                         Diagnostics& diagnostics);
+  /// Strains, only if the deck requests them.
+  void add_strains(const fe::Model& model, const ElementIndex& elements,
+                   const std::vector<records::ElementStresses>& strains,
+                   const std::vector<records::ElementForces>& forces, records::ListedStep& step,
+                   Diagnostics& diagnostics);
   /// Only if the deck requests them.
   void add_energies(const std::vector<records::ElementForces>& elements, double total, records::ListedStep& step) const;
   void add_grid_forces(const fe::Model& model, const std::vector<records::GridForce>& forces,

@@ -12,6 +12,7 @@
 #include "analysis/listing/element_columns.hpp"
 #include "fe/cards/element_properties.hpp"
 #include "fe/elements/solid.hpp"
+#include "fe/elements/spring_rows.hpp"
 #include "formats/records/group_names.hpp"
 
 namespace bough::analysis {
@@ -50,10 +51,13 @@ struct EndStress {
 
 /// SA1 to SA4 (bending alone), axial, largest, smallest, margin of tension; then those of end B and of compression.
 VectorXd make_bar_stresses(const fe::Element& element, const VectorXd& forces, const VectorXd& stress,
-                           const StressLimits& limits) {
+                           const StressLimits& limits, bool of_strain) {
   VectorXd pull = VectorXd::Zero(forces.size());
   pull(0) = forces(0);
-  const double axial = element.stress_recovery()->calc_stresses(pull)(0, 0);
+  const fe::StressRecovery& recovery = *element.stress_recovery();
+  double axial = of_strain ? recovery.calc_strains(pull)(0, 0) : recovery.calc_stresses(pull)(0, 0);
+  // The mean free expansion of the points is axial strain.
+  if (of_strain) axial += (stress - recovery.calc_strains(forces).col(0)).mean();
   VectorXd row(15);
   double max_stress = -HUGE_VAL, min_stress = HUGE_VAL;
   for (int end = 0; end < 2; ++end) {
@@ -106,55 +110,72 @@ std::array<double, 2> find_surfaces(const fe::Element& element, const records::P
   return {pshell && pshell->z1 ? *pshell->z1 : -0.5 * t, pshell && pshell->z2 ? *pshell->z2 : 0.5 * t};
 }
 
-/// Distance, x y xy, angle, major, minor, von Mises of the lower, then of the upper surface, in axes turned by `angle`.
-VectorXd make_plate_stresses(const std::array<double, 2>& z, const VectorXd& stress, double angle) {
+/// Distance, x y xy, angle, major, minor, von Mises of the lower, then of the upper surface, in axes turned by `angle`;
+/// shears of strains are angles.
+VectorXd make_plate_row(const std::array<double, 2>& z, const VectorXd& values, double angle, bool of_strain) {
   VectorXd row(16);
   for (int side = 0; side < 2; ++side) {
-    const Eigen::Vector3d s = turn_plane(stress.segment<3>(3 * side), angle);
+    Eigen::Vector3d s = values.segment<3>(3 * side);
+    if (of_strain) s = fe::halve_shears(fe::StressKind::Plane, s);
+    s = turn_plane(s, angle);
     const auto [at, major, minor] = calc_principal(s(0), s(1), s(2));
-    row.segment<8>(8 * side) << z[static_cast<std::size_t>(side)], s, at, major, minor, fe::calc_plane_von_mises(s);
+    if (of_strain) s(2) *= 2;
+    row.segment<8>(8 * side) << z[static_cast<std::size_t>(side)], s, at, major, minor,
+        of_strain ? fe::calc_plane_von_mises_strain(s) : fe::calc_plane_von_mises(s);
   }
   return row;
 }
 
-/// A row per ply: 11 22 12, the shear above it (none above the last), angle, major, minor, largest shear.
-MatrixXd make_ply_stresses(const fe::Element& element, const VectorXd& stress) {
+/// Values of make_plate_row that are strains of the reference surface and Nastran's curvatures -κ: strains of bending
+/// at z = -1. `values` ends with those of StressKind::Mid.
+VectorXd take_curvatures(const VectorXd& values) {
+  VectorXd mid = values.tail<6>();
+  mid.tail<3>() *= -1;
+  return mid;
+}
+
+/// A row per ply: 11 22 12, the shear above it (none above the last), angle, major, minor, largest shear. Strains have
+/// none above the plies.
+MatrixXd make_ply_rows(const fe::Element& element, const VectorXd& stress, bool of_strain) {
   const auto points = element.stress_recovery()->stress_points();
   const Index count =
       std::count_if(points.begin(), points.end(), [](const auto& point) { return point.kind == fe::StressKind::Ply; });
   MatrixXd rows(count, 9);
   for (Index k = 0; k < count; ++k) {
     const Eigen::Vector3d s = stress.segment<3>(3 * k);
-    const auto [at, major, minor] = calc_principal(s(0), s(1), s(2));
+    const auto [at, major, minor] = calc_principal(s(0), s(1), of_strain ? 0.5 * s(2) : s(2));
     const Index bond = 3 * count + 2 * k;
     const Eigen::RowVector2d above =
-        bond < stress.size() ? Eigen::RowVector2d(stress.segment<2>(bond)) : Eigen::RowVector2d::Zero();
-    rows.row(k) << s.transpose(), above, at, major, minor, 0.5 * (major - minor);
+        !of_strain && bond < stress.size() ? Eigen::RowVector2d(stress.segment<2>(bond)) : Eigen::RowVector2d::Zero();
+    rows.row(k) << s.transpose(), above, at, major, minor, (of_strain ? 1 : 0.5) * (major - minor);
   }
   return rows;
 }
 
 /// The centre and the corners: xx xy, first principal and its cosines, mean pressure, von Mises; yy yz, second; zz zx,
 /// third.
-MatrixXd make_solid_stresses(const fe::Element& element, const VectorXd& forces, const VectorXd& stress) {
-  const MatrixXd corners = element.as_solid()->calc_corner_stresses(forces);
+MatrixXd make_solid_rows(const VectorXd& centre, const MatrixXd& corners, bool of_strain) {
   MatrixXd rows(corners.cols() + 1, 20);
   for (Index k = 0; k < rows.rows(); ++k) {
-    const VectorXd s = k == 0 ? stress : VectorXd(corners.col(k - 1));
+    const VectorXd s = k == 0 ? centre : VectorXd(corners.col(k - 1));
+    const VectorXd t = of_strain ? fe::halve_shears(fe::StressKind::Solid, s) : s;
     Eigen::Matrix3d sigma;
-    sigma << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+    sigma << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(sigma);
     const auto& value = principal.eigenvalues();
     const auto& axis = principal.eigenvectors();
-    rows.row(k) << s[0], s[3], value[2], axis.col(2).transpose(), -sigma.trace() / 3, fe::calc_solid_von_mises(s),  //
+    rows.row(k) << s[0], s[3], value[2], axis.col(2).transpose(), -sigma.trace() / 3,
+        of_strain ? fe::calc_solid_von_mises_strain(s) : fe::calc_solid_von_mises(s),  //
         s[1], s[4], value[1], axis.col(1).transpose(), s[2], s[5], value[0], axis.col(0).transpose();
   }
   return rows;
 }
 
 /// The components of the points themselves, without what is derived.
-VectorXd take_components(const fe::Element& element, const records::ElementStresses& stresses, Index row) {
-  const auto points = element.stress_recovery()->stress_points();
+VectorXd take_components(const fe::Element& element, const records::ElementStresses& stresses, Index row,
+                         bool of_strain) {
+  const auto& recovery = *element.stress_recovery();
+  const auto points = of_strain ? recovery.strain_points() : recovery.stress_points();
   std::vector<double> values;
   for (const auto& point : points)
     for (const auto& component : fe::list_components(point.kind)) {
@@ -214,14 +235,14 @@ double calc_margin(double stress, double limit) {
   return limit == 0 || stress == 0 ? kBlank : std::abs(limit) / std::abs(stress) - 1;
 }
 
-std::optional<records::ListedElements> make_listed_stresses(const fe::Model& model, const ElementIndex& elements,
-                                                            const records::Deck& deck,
-                                                            const records::ElementStresses& stresses,
-                                                            const std::vector<records::ElementForces>& forces,
-                                                            const std::map<int, StressLimits>& limits,
-                                                            const std::function<bool(int)>& is_wanted) {
+std::optional<records::ListedElements> make_listed_stresses(
+    const fe::Model& model, const ElementIndex& elements, const records::Deck& deck,
+    const records::ElementStresses& stresses, const std::vector<records::ElementForces>& forces,
+    const std::map<int, StressLimits>& limits, const std::function<bool(int)>& is_wanted, records::PointTable table) {
   records::ListedElements block;
   block.card = records::get_card_of_group(stresses.card);
+  block.table = table;
+  const bool of_strain = block.is_strain(), has_curvatures = table == records::PointTable::CurvatureStrain;
   if (stresses.id.empty()) return std::nullopt;
   const auto kind = elements.at({block.card, stresses.id.front()})->stress_recovery()->stress_points().front().kind;
   block.type = find_stress_type(block.card, kind);
@@ -239,9 +260,9 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
   for (const auto k : order) {
     const int id = stresses.id[k];
     const fe::Element& element = *elements.at({block.card, id});
-    const VectorXd stress = take_components(element, stresses, static_cast<Index>(k));
+    const VectorXd stress = take_components(element, stresses, static_cast<Index>(k), of_strain);
     const auto found = limits.find(id);
-    const StressLimits own = found == limits.end() ? StressLimits{} : found->second;
+    const StressLimits own = of_strain || found == limits.end() ? StressLimits{} : found->second;
     const auto add = [&](const VectorXd& row, int point) {
       block.id.push_back(id);
       block.point.push_back(point);
@@ -258,21 +279,25 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
           block.ends.push_back({model.node(ends[0]).id, model.node(ends[1]).id});
           add(make_beam_stresses(stress, own), 0);
         } else {
-          add(make_bar_stresses(element, force_rows.at(id), stress, own), 0);
+          add(make_bar_stresses(element, force_rows.at(id), stress, own, of_strain), 0);
         }
         break;
       case fe::StressKind::Plane:
-        add(make_plate_stresses(find_surfaces(element, find_pshell(stresses.property[k])), stress,
-                                calc_turn(model, element)),
+        add(make_plate_row(
+                has_curvatures ? std::array{0.0, -1.0} : find_surfaces(element, find_pshell(stresses.property[k])),
+                has_curvatures ? take_curvatures(stress) : stress, calc_turn(model, element), of_strain),
             0);
         break;
       case fe::StressKind::Ply: {
-        const MatrixXd plies = make_ply_stresses(element, stress);
+        const MatrixXd plies = make_ply_rows(element, stress, of_strain);
         for (Index p = 0; p < plies.rows(); ++p) add(plies.row(p).transpose(), static_cast<int>(p) + 1);
         break;
       }
       case fe::StressKind::Solid: {
-        const MatrixXd points = make_solid_stresses(element, force_rows.at(id), stress);
+        const MatrixXd corners =
+            of_strain ? MatrixXd(stresses.corner.row(static_cast<Index>(k)).reshaped(6, stresses.corner.cols() / 6))
+                      : element.as_solid()->calc_corner_stresses(force_rows.at(id));
+        const MatrixXd points = make_solid_rows(stress, corners, of_strain);
         for (Index p = 0; p < points.rows(); ++p)
           add(points.row(p).transpose(), p == 0 ? 0 : model.node(nodes[static_cast<std::size_t>(p - 1)]).id);
         break;
@@ -283,6 +308,44 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
   }
   block.real.resize(static_cast<Index>(rows.size()), rows.empty() ? 0 : rows.front().size());
   for (std::size_t r = 0; r < rows.size(); ++r) block.real.row(static_cast<Index>(r)) = rows[r].transpose();
+  return block;
+}
+
+std::optional<records::ListedElements> make_listed_bushes(const ElementIndex& elements, const records::Deck& deck,
+                                                          const records::ElementForces& forces,
+                                                          const Eigen::Ref<const VectorXd>& u_g,
+                                                          const std::function<bool(int)>& is_wanted,
+                                                          records::PointTable table) {
+  if (forces.card != "CBUSH") return std::nullopt;
+  records::ListedElements block;
+  block.card = forces.card;
+  block.type = 102;
+  block.table = table;
+  std::map<int, std::array<double, 4>> coefficients;
+  for (const auto& p : deck.pbush) coefficients[p.id] = p.rcv;
+  std::map<int, VectorXd> rows;
+  for (std::size_t k = 0; k < forces.id.size(); ++k) {
+    const int id = forces.id[k];
+    if (!is_wanted(id)) continue;
+    VectorXd six = forces.force.row(static_cast<Index>(k)).transpose();
+    const fe::Element& element = *elements.at({block.card, id});
+    if (block.is_strain()) {
+      const auto* springs = dynamic_cast<const fe::SpringRows*>(&element);
+      BOUGH_DEMAND(springs);
+      six = springs->calc_spring_rows() * u_g(element.gdofs());
+    }
+    const auto found = coefficients.find(forces.property[k]);
+    const auto factor = found == coefficients.end() ? records::Pbush{}.rcv : found->second;
+    six.head<3>() *= factor[block.is_strain() ? 2 : 0];
+    six.tail<3>() *= factor[block.is_strain() ? 3 : 1];
+    rows[id] = six;
+  }
+  block.real.resize(static_cast<Index>(rows.size()), 6);
+  for (const auto& [id, six] : rows) {
+    block.real.row(static_cast<Index>(block.id.size())) = six.transpose();
+    block.id.push_back(id);
+    block.point.push_back(0);
+  }
   return block;
 }
 

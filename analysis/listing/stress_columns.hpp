@@ -1,5 +1,5 @@
 #pragma once
-/// \file Stresses of elements in the columns of Nastran's tables (docs/formats/op2.md).
+/// \file Stresses and strains of elements in the columns of Nastran's tables (docs/formats/op2.md).
 #include <functional>
 #include <map>
 #include <optional>
@@ -22,14 +22,23 @@ std::map<int, StressLimits> list_stress_limits(const records::Deck& deck);
 /// limit / |stress| - 1 for tension and compression; no number without a limit, or where nothing of that sign acts.
 double calc_margin(double stress, double limit);
 
-/// Stresses of the elements of one card that `is_wanted` (ids) selects, by their ids; none if this card has no such
-/// table. `forces`: of the same card.
+/// Stresses or strains (`table`) of the elements of one card that `is_wanted` (ids) selects, by their ids; none if this
+/// card has no such table. `forces`: of the same card. Strains have no margins.
 std::optional<records::ListedElements> make_listed_stresses(const fe::Model& model, const ElementIndex& elements,
                                                             const records::Deck& deck,
                                                             const records::ElementStresses& stresses,
                                                             const std::vector<records::ElementForces>& forces,
                                                             const std::map<int, StressLimits>& limits,
-                                                            const std::function<bool(int)>& is_wanted);
+                                                            const std::function<bool(int)>& is_wanted,
+                                                            records::PointTable table = records::PointTable::Stress);
+
+/// Stresses of CBUSH, SA times forces and ST times moments, or strains, EA times translations and ET times rotations,
+/// with the coefficients of PBUSH RCV; none for other cards. \param u_g  displacements of the strains.
+std::optional<records::ListedElements> make_listed_bushes(const ElementIndex& elements, const records::Deck& deck,
+                                                          const records::ElementForces& forces,
+                                                          const Eigen::Ref<const Eigen::VectorXd>& u_g,
+                                                          const std::function<bool(int)>& is_wanted,
+                                                          records::PointTable table);
 
 /// Columns of make_listed_stresses that are linear in the motion, for real and imaginary parts of a response: bars
 /// SA1 to SA4, axial, SB1 to SB4; beams SXC to SXF of both ends; rods axial, torsion; plates distance, x, y, xy of both

@@ -172,6 +172,9 @@ ModesAnswer solve_modes(const ModesRequest& request, ModesReceiver& receiver, Ev
   std::optional<ListingMaker> listing;
   if (request.has_listing) listing.emplace(deck, requests, diagnostics);
   if (!listing && !request.energies) note_requests(deck, requests, {{"ESE", "--f06 FILE, or --ese,"}}, diagnostics);
+  if (!listing)
+    note_requests(deck, requests, {{"GPSTRESS", "--f06 FILE, or --op2 FILE,"}, {"STRFIELD", "--op2 FILE"}},
+                  diagnostics);
   diagnostics.throw_if_errors();
   bool has_modes = false;
   for (const auto& task : tasks) {

@@ -100,7 +100,15 @@ class PictureBuilder {
     Row row{{}, std::move(element)};
     for (const int id : ids) {
       row.grids.push_back(find(id));
-      if (row.grids.back() < 0) return;
+      if (row.grids.back() >= 0) continue;
+      const auto& scalars = deck_.scalar_points;
+      if (deck_.is_refused(id, {"GRID"}) || std::find(scalars.begin(), scalars.end(), id) != scalars.end()) return;
+      const auto& [number, property, card, at] = row.element;
+      diagnostics_.error(
+          "fe.missing-grid", deck_.locate(at),
+          fmt::format("{} {} is not drawn: it refers to grid {}, which the deck does not define", card, number, id),
+          "add the GRID or correct the id");
+      return;
     }
     join(row.grids);
     rows_[type].push_back(std::move(row));

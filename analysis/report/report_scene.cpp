@@ -45,7 +45,7 @@ std::vector<std::string> name_modes(const records::FlexBody& body) {
 report::SceneBody read_scene_body(const records::SystemSpec& spec, const records::BodyRecord& body,
                                   const std::string& file, const hdf5::RunInputs& inputs, const ReportRequest& request,
                                   std::vector<std::string>& missing) {
-  report::SceneBody drawn{body.name, {}, {}, 0};
+  report::SceneBody drawn{body.name, {}, {}, {}, 0};
   if (body.file.empty()) {
     drawn.drawing = report::make_box(body.mass, body.cg, body.inertia, list_rigid_points(spec, body));
     return drawn;
@@ -60,6 +60,7 @@ report::SceneBody read_scene_body(const records::SystemSpec& spec, const records
   Diagnostics unused;  // said by the run
   const auto flex = read_body(place + body.file.substr(written.size()), unused);
   drawn.drawing = report::make_drawing(flex);
+  if (drawn.drawing.num_dropped > 0) drawn.all_shapes = report::make_drawing(flex, true).shapes;
   if (!report::add_energy_matrices(flex, drawn.drawing))
     missing.push_back("body " + body.name + ": the strain energy of its elements in all modes is too large for a page");
   drawn.mode_names = name_modes(flex);

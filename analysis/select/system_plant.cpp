@@ -26,6 +26,15 @@ void keep_values(records::BodyRecord& body, const std::vector<int>& kept) {
   body.num_modes = static_cast<int>(kept.size());
 }
 
+void demand_one_level(const records::BodyRecord& body, const std::string& system) {
+  if (body.levels.empty()) return;
+  throw InputError(
+      "select.levels", body.at.file.empty() ? SourceLocation{system} : body.at,
+      "body '" + body.name + "' has fill levels: their modes differ, and one choice of modes is not the same in all",
+      "set modes = N of the body, which keeps the lowest of every level, or rank the modes of one level in "
+      "a copy of the system without levels");
+}
+
 SystemPlant::SystemPlant(const std::string& system, OperatingChoice choice, Diagnostics& diagnostics)
     : file_(system), choice_(std::move(choice)), loaded_(load_system(system, diagnostics, {}, choice_.set)) {}
 
@@ -33,7 +42,9 @@ std::vector<std::vector<BodyMode>> SystemPlant::list_uses(const std::string& bod
   std::vector<std::vector<BodyMode>> uses;
   for (const auto& record : loaded_.spec.bodies) {
     const auto found = loaded_.flex.find(record.file);
-    if (found == loaded_.flex.end() || !is_same_body(resolve_beside(file_, record.file), body_file)) continue;
+    const auto is_it = [&](const std::string& file) { return is_same_body(resolve_beside(file_, file), body_file); };
+    if (std::any_of(record.levels.begin(), record.levels.end(), is_it)) demand_one_level(record, file_);
+    if (found == loaded_.flex.end() || !is_it(record.file)) continue;
     uses.resize(static_cast<std::size_t>(found->second.num_modes()));
     const int num_used = record.num_modes < 0 ? found->second.num_modes() : record.num_modes;
     for (int mode = 0; mode < num_used; ++mode) uses[static_cast<std::size_t>(mode)].push_back({record.name, mode});

@@ -42,6 +42,8 @@ class SystemPlant {
   LoadedSystem loaded_;
 };
 
+/// Throws InputError "select.levels" if the body of the system file has fill levels.
+void demand_one_level(const records::BodyRecord& body, const std::string& system);
 /// Cuts the values of a body's record, one per mode of its file, to the modes kept, ascending, and sets their number.
 void keep_values(records::BodyRecord& body, const std::vector<int>& kept);
 

@@ -162,6 +162,7 @@ std::vector<SystemBody> list_system_bodies(const SelectRequest& o, Diagnostics& 
     const bool is_first = &system == &o.systems.front();
     const auto loaded = load_system(system, is_first ? diagnostics : again, {}, o.set);
     std::vector<SystemBody> of_system;
+    for (const auto& record : loaded.spec.bodies) demand_one_level(record, system);
     for (const auto& record : loaded.spec.bodies)
       if (auto body = take_used_modes(loaded, record))
         of_system.push_back({record.name, embed::shorten_path(resolve_beside(system, record.file)), std::move(*body)});

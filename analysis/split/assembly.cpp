@@ -27,7 +27,8 @@ std::vector<std::vector<int>> group_shared(const Structure& structure, const Par
     return grid;
   };
   for (const auto& element : structure.elements) {
-    if (!is_structural(element) || element.grids.size() < 3) continue;
+    // A connector may be at the grids of two cuts, one through the shells of each side.
+    if (!is_structural(element) || element.grids.size() < 3 || !element.shells.empty()) continue;
     std::vector<int> shared;
     for (const int grid : element.grids)
       if (group.count(grid) > 0) shared.push_back(grid);

@@ -16,8 +16,8 @@ const std::vector<ElementRole>& get_roles(bool is_rigid) {
 }
 
 DeckItem make_item(const records::ElementView& view) {
-  DeckItem item{view.id, view.property,    view.card, view.grids, view.is_grounded,
-                false,   view.has_moments, view.at,   view.centre};
+  DeckItem item{view.id, view.property,    view.card, view.grids,  view.is_grounded,
+                false,   view.has_moments, view.at,   view.centre, {}};
   std::sort(item.grids.begin(), item.grids.end());
   item.grids.erase(std::unique(item.grids.begin(), item.grids.end()), item.grids.end());
   std::erase(item.grids, 0);
@@ -54,6 +54,8 @@ void keep_rigid(records::Deck& deck, const std::vector<char>& is_kept) {
 std::vector<int> list_reference_grids(const records::Deck& deck) {
   std::vector<int> grids;
   records::visit_elements(deck, {ElementRole::Element}, [&](const auto& view) { grids.push_back(view.orientation); });
+  for (const auto& card : deck.special.cfast) grids.insert(grids.end(), {card.gs, card.ga, card.gb});
+  for (const auto& card : deck.special.cweld) grids.insert(grids.end(), {card.gs, card.ga, card.gb});
   for (const auto& system : deck.coord_systems)
     if (system.by_grids) grids.insert(grids.end(), system.grids.begin(), system.grids.end());
   for (const auto& load : deck.load_cards.directed) grids.insert(grids.end(), load.grids.begin(), load.grids.end());

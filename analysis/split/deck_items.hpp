@@ -17,7 +17,8 @@ struct DeckItem {
   bool is_drawn = false;     ///< PLOTEL
   bool has_moments = false;  ///< transfers moments at its grids
   records::CardLocation at;
-  int centre = 0;  ///< reference grid of an RBE3; hub of other rigid elements
+  int centre = 0;           ///< reference grid of an RBE3; hub of other rigid elements
+  std::vector<int> shells;  ///< of CFAST and CWELD: ids of the shells whose motion its ends follow; none by grids
 };
 
 // The kinds are rows of formats/records/element_cards.cpp.
@@ -31,7 +32,8 @@ std::vector<DeckItem> list_rigid(const records::Deck& deck);
 void keep_elements(records::Deck& deck, const std::vector<char>& is_kept);
 void keep_rigid(records::Deck& deck, const std::vector<char>& is_kept);
 
-/// Grids that carry no load of the card: orientations, coordinate systems by grids, lines of action of loads.
+/// Grids that carry no load of the card: orientations, places of connectors, coordinate systems by grids, lines of
+/// action of loads.
 std::vector<int> list_reference_grids(const records::Deck& deck);
 
 /// (grid, component mask) that rigid elements and MPC make dependent.

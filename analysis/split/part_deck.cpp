@@ -42,6 +42,40 @@ std::set<int> list_part_grids(const Structure& structure, const Partition& parti
   return grids;
 }
 
+/// A pressure on grids (PLOAD) is in the first part that has all of these.
+void keep_grid_pressures(const Structure& structure, const Partition& partition, int part, records::Deck& deck) {
+  std::erase_if(deck.load_cards.grid_pressures, [&](const auto& card) {
+    const auto common = partition.find_common(card.grids);
+    if (common.empty())
+      throw InputError("split.load-across-cut", structure.locate(card.at),
+                       fmt::format("PLOAD on the grids {} is on several parts: the cut goes through it",
+                                   fmt::join(card.grids, ", ")),
+                       "move the cut, or give the pressure by PLOAD2 or PLOAD4 on elements");
+    return *common.begin() != part;
+  });
+}
+
+/// Nonstructural mass (NSM) of the elements and properties of the part.
+void keep_nonstructural(const std::set<int>& elements, const std::set<int>& properties, records::Deck& deck) {
+  auto& cards = deck.special.nsm;
+  std::erase_if(cards, [&](const auto& card) {
+    const auto& ids = card.type == "ELEMENT" || card.type == "CONROD" ? elements : properties;
+    if (card.is_all) return ids.empty();
+    return std::none_of(card.range.begin(), card.range.end(), [&](const auto& range) {
+      const auto found = ids.lower_bound(range.first);
+      return found != ids.end() && *found <= range.second;
+    });
+  });
+  std::set<int> sets;
+  for (const auto& card : cards) sets.insert(card.sid);
+  for (auto& [id, members] : deck.special.nsmadd)
+    std::erase_if(members, [&](int member) { return sets.count(member) == 0; });
+  std::erase_if(deck.special.nsmadd, [](const auto& sum) { return sum.second.empty(); });
+  for (const auto& [id, members] : deck.special.nsmadd) sets.insert(id);
+  for (auto& subcase : deck.subcases)
+    if (sets.count(subcase.nsm) == 0) subcase.nsm = 0;
+}
+
 void keep_loads(const Owner& owns, const std::set<int>& grids, const std::set<int>& elements, records::Deck& deck) {
   const auto is_foreign = [&](const auto& card) { return !owns(card.g); };
   std::erase_if(deck.point_loads, is_foreign);
@@ -52,11 +86,6 @@ void keep_loads(const Owner& owns, const std::set<int>& grids, const std::set<in
   const auto is_of_other = [&](const auto& card) { return elements.count(card.element) == 0; };
   std::erase_if(cards.beams, is_of_other);
   std::erase_if(cards.pressures, is_of_other);
-  // A pressure between grids of the cut alone is in the deck of their owner.
-  std::erase_if(cards.grid_pressures, [&](const auto& card) {
-    const bool has_all = std::all_of(card.grids.begin(), card.grids.end(), [&](int g) { return grids.count(g) > 0; });
-    return !has_all || (std::all_of(card.grids.begin(), card.grids.end(), [&](int g) { return !owns(g); }));
-  });
   for (auto& card : deck.special.accelerations) std::erase_if(card.grids, [&](int g) { return grids.count(g) == 0; });
   std::erase_if(deck.special.accelerations,
                 [](const auto& card) { return card.table.empty() && !card.is_all && card.grids.empty(); });
@@ -103,19 +132,10 @@ void keep_sets(records::Deck& deck) {
 void keep_matrices(const Structure& structure, const Partition& partition, int part, records::Deck& deck) {
   std::set<std::string> kept;
   for (const auto& matrix : deck.direct_matrices) {
-    std::set<int> common;
-    bool is_first = true;
-    for (const auto& entry : matrix.entries)
-      for (const int grid : {entry.gi, entry.gj}) {
-        const auto found = partition.grid_parts.find(grid);
-        const std::set<int> parts = found == partition.grid_parts.end() ? std::set<int>{0} : found->second;
-        std::set<int> both;
-        std::set_intersection(common.begin(), common.end(), parts.begin(), parts.end(),
-                              std::inserter(both, both.end()));
-        common = is_first ? parts : both;
-        is_first = false;
-      }
-    if (common.empty() && !is_first)
+    std::vector<int> grids;
+    for (const auto& entry : matrix.entries) grids.insert(grids.end(), {entry.gi, entry.gj});
+    const auto common = partition.find_common(grids);
+    if (common.empty() && !grids.empty())
       throw InputError("split.matrix-across-cut", structure.locate(matrix.at),
                        "DMIG " + matrix.name + " joins grids of several parts: the cut goes through it",
                        "move the cut, so that one part has all of its grids");
@@ -234,7 +254,13 @@ records::Deck make_part_deck(const Structure& structure, const Partition& partit
   keep_elements(deck, is_kept);
   keep_rigid(deck, is_rigid_kept);
   const Owner owns(partition, part);
-  keep_loads(owns, grids, list_part_elements(structure, is_kept), deck);
+  const auto ids = list_part_elements(structure, is_kept);
+  std::set<int> properties;
+  for (std::size_t i = 0; i < is_kept.size(); ++i)
+    if (is_kept[i] != 0) properties.insert(structure.elements[i].property);
+  keep_loads(owns, grids, ids, deck);
+  keep_grid_pressures(structure, partition, part, deck);
+  keep_nonstructural(ids, properties, deck);
   keep_matrices(structure, partition, part, deck);
 
   std::set<int> referred;

@@ -10,7 +10,7 @@ namespace bough::analysis::splitting {
 ///
 /// Constraints are those of the deck for part 0 if the deck holds it. The others keep the components that every grid
 /// of the deck holds; `clamp` of the assembly is held in all components.
-/// \throws InputError split.matrix-across-cut, split.dependent-cut
+/// \throws InputError split.matrix-across-cut, split.load-across-cut, split.dependent-cut
 records::Deck make_part_deck(const Structure& structure, const Partition& partition, const Assembly& assembly,
                              int part);
 

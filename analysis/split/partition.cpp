@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/split/connectors.hpp"
 #include "analysis/split/path.hpp"
 #include "base/platform.hpp"
 
@@ -108,7 +109,7 @@ Keys cut_by_planes(const Structure& structure, const std::vector<std::string>& t
     int num_below = 0, num_above = 0;
     for (std::size_t i = 0; i < keys.key.size(); ++i) {
       Vector3d centre;
-      if (!is_structural(structure.elements[i]) || !find_centre(structure, structure.elements[i], centre)) continue;
+      if (!is_placed(structure.elements[i]) || !find_centre(structure, structure.elements[i], centre)) continue;
       const bool is_above = plane.normal.dot(centre) > plane.offset;
       ++(is_above ? num_above : num_below);
       if (keys.key[i] < 0) keys.key[i] = 0;
@@ -171,7 +172,7 @@ Keys cut_by_elements(const Structure& structure, const std::vector<std::string>&
   const int rest = static_cast<int>(lists.size());
   Keys keys{std::vector<int>(structure.elements.size(), -1)};
   for (std::size_t i = 0; i < keys.key.size(); ++i)
-    if (is_structural(structure.elements[i])) keys.key[i] = rest;
+    if (is_placed(structure.elements[i])) keys.key[i] = rest;
   Diagnostics diagnostics;
   for (int part = 0; part < rest; ++part) {
     for (const auto& word : split_words(lists[static_cast<std::size_t>(part)], ',')) {
@@ -181,7 +182,7 @@ Keys cut_by_elements(const Structure& structure, const std::vector<std::string>&
         const auto& element = structure.elements[i];
         if (!is_structural(element) || !parsed.names(element)) continue;
         is_there = true;
-        if (keys.key[i] != rest && keys.key[i] != part)
+        if (keys.key[i] != -1 && keys.key[i] != rest && keys.key[i] != part)
           diagnostics.error(
               "split.element-in-two-parts", structure.locate(element.at),
               fmt::format("{} is in parts {} and {} of --elements", name_item(element), keys.key[i] + 1, part + 1),
@@ -226,7 +227,7 @@ Keys cut_at_grids(const Structure& structure, const std::vector<int>& cuts) {
   int next = -2;  // an element between cut grids alone is a part
   for (std::size_t i = 0; i < keys.key.size(); ++i) {
     const auto& element = structure.elements[i];
-    if (!is_structural(element)) continue;
+    if (!is_placed(element)) continue;
     const auto inner =
         std::find_if(element.grids.begin(), element.grids.end(), [&](int grid) { return cut.count(grid) == 0; });
     keys.key[i] = inner == element.grids.end() ? next-- : groups.find(*inner);
@@ -261,6 +262,8 @@ std::vector<double> choose_stations(const Structure& structure, const std::map<i
     if (high > low) bridged.emplace_back(low, high);
   }
   const double same = kSameStation * length;
+  for (const auto& [low, high] : list_joined_ranges(structure, coordinate))
+    if (high > low) bridged.emplace_back(low - 2 * same, high + 2 * same);  // shells are cut at these, too
   std::vector<double> free;
   for (const double s : stations) {
     if (s <= first + same || s >= last - same || (!free.empty() && s <= free.back() + same)) continue;
@@ -272,7 +275,7 @@ std::vector<double> choose_stations(const Structure& structure, const std::map<i
   if (free.size() < num_cuts)
     throw InputError("split.too-many-parts", structure.locate({}),
                      fmt::format("{} parts need {} stations of grids along the structure, which has {} that no rigid "
-                                 "element bridges",
+                                 "element, CFAST or CWELD bridges",
                                  choice.num_parts, num_cuts, free.size()),
                      fmt::format("give --parts {} at most, or cut with --grids or --elements", free.size() + 1));
   std::vector<double> cuts;
@@ -298,14 +301,9 @@ Keys cut_along(const Structure& structure, const SplitChoice& choice) {
   const auto cuts = choose_stations(structure, coordinate, choice);
   for (std::size_t i = 0; i < keys.key.size(); ++i) {
     const auto& element = structure.elements[i];
-    if (!is_structural(element)) continue;
-    double sum = 0;
-    int count = 0;
-    for (const int grid : element.grids)
-      if (const auto found = coordinate.find(grid); found != coordinate.end()) sum += found->second, ++count;
-    if (count > 0)
-      keys.key[i] =
-          static_cast<int>(std::count_if(cuts.begin(), cuts.end(), [&](double s) { return s < sum / count; }));
+    if (!is_placed(element)) continue;
+    if (const auto mean = calc_mean_coordinate(element, coordinate))
+      keys.key[i] = static_cast<int>(std::count_if(cuts.begin(), cuts.end(), [&](double s) { return s < *mean; }));
   }
   return keys;
 }
@@ -426,6 +424,18 @@ void report_pieces(const Structure& structure, const DeckItem& rbe3, const std::
 
 }  // namespace
 
+std::set<int> Partition::find_common(const std::vector<int>& grids) const {
+  std::set<int> common;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    const auto found = grid_parts.find(grids[i]);
+    const std::set<int> parts = found == grid_parts.end() ? std::set<int>{0} : found->second;
+    std::set<int> both;
+    std::set_intersection(common.begin(), common.end(), parts.begin(), parts.end(), std::inserter(both, both.end()));
+    common = i == 0 ? parts : both;
+  }
+  return common;
+}
+
 Partition assign_elements(const Structure& structure, const SplitChoice& choice) {
   const int num_choices = static_cast<int>(choice.num_parts > 0) + static_cast<int>(!choice.planes.empty()) +
                           static_cast<int>(!choice.elements.empty()) + static_cast<int>(!choice.grids.empty());
@@ -440,6 +450,7 @@ Partition assign_elements(const Structure& structure, const SplitChoice& choice)
               : !choice.planes.empty()   ? cut_by_planes(structure, choice.planes)
               : !choice.elements.empty() ? cut_by_elements(structure, choice.elements)
                                          : cut_at_grids(structure, choice.grids);
+  assign_connectors(structure, keys.key);
   Partition partition;
   const int num_chosen = number_keys(keys.key);
   if (num_chosen < 2)

@@ -23,11 +23,14 @@ struct Partition {
     const auto found = grid_parts.find(grid);
     return found == grid_parts.end() || found->second.empty() ? 0 : *found->second.begin();
   }
+  /// Parts that have all of the grids; part 0 has those without elements.
+  std::set<int> find_common(const std::vector<int>& grids) const;
 };
 
 /// The part of each element that joins grids, by the choice; pieces that nothing connects are separate parts.
 /// \throws InputError split.bad-choice, split.bad-plane, split.unknown-element, split.unknown-grid,
-///     split.nothing-separated, split.element-in-two-parts, split.too-many-parts, split.loose-parts
+///     split.nothing-separated, split.element-in-two-parts, split.too-many-parts, split.loose-parts,
+///     split.connector-across-cut
 /// \post joins_pieces has a flag for each rigid element.
 Partition assign_elements(const Structure& structure, const SplitChoice& choice);
 

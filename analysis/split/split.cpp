@@ -463,6 +463,20 @@ void note_pieces(const Partition& partition, const Structure& structure, Diagnos
                      "nothing to do");
 }
 
+void note_drawn(const Partition& partition, const Structure& structure, Diagnostics& diagnostics) {
+  const DeckItem* first = nullptr;
+  int count = 0;
+  for (const auto& element : structure.elements) {
+    if (!element.is_drawn || !partition.find_common(element.grids).empty()) continue;
+    if (count++ == 0) first = &element;
+  }
+  if (first != nullptr)
+    diagnostics.note("split.drawn-line", structure.locate(first->at),
+                     fmt::format("{}{} joins grids of several parts, and is in none", name_item(*first),
+                                 count > 1 ? fmt::format(", as {} more,", count - 1) : ""),
+                     "nothing to do: PLOTEL is drawn alone");
+}
+
 }  // namespace
 
 SplitAnswer split_deck(const SplitRequest& request, Events& events) {
@@ -490,6 +504,7 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
     auto assembly =
         make_assembly(structure, find_joints(structure, partition, request.choice.interface), is_held, root, partition);
     note_pieces(partition, structure, diagnostics);
+    note_drawn(partition, structure, diagnostics);
 
     PartNames names{request.name, request.deck_path.empty() ? request.deck : request.deck_path};
     if (names.base.empty()) names.base = std::filesystem::path(request.deck).stem().string();

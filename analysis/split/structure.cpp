@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "fe/elements/connector.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/model/sets.hpp"
 #include "formats/records/params.hpp"
@@ -61,6 +62,23 @@ unsigned find_common(const Structure& structure) {
   return common;
 }
 
+/// CFAST and CWELD name shells or properties: their grids are those of the elements made of them.
+void find_connected(const fe::Model& model, std::vector<DeckItem>& elements) {
+  std::map<std::string, DeckItem*> connectors;
+  for (auto& item : elements)
+    if (item.card == "CFAST" || item.card == "CWELD") connectors[name_item(item)] = &item;
+  if (connectors.empty()) return;
+  for (const auto& element : model.elements()) {
+    const auto* connector = dynamic_cast<const fe::Connector*>(element.get());
+    if (connector == nullptr) continue;
+    DeckItem& item = *connectors.at(connector->card() + " " + std::to_string(connector->id()));
+    item.shells = connector->shells();
+    item.grids.clear();
+    for (const int node : connector->nodes()) item.grids.push_back(model.node(node).id);
+    std::sort(item.grids.begin(), item.grids.end());
+  }
+}
+
 void refuse_unsplit_cards(const records::Deck& deck, const records::Subcase& subcase, Diagnostics& diagnostics) {
   if (!deck.superelements.empty() || !deck.super.empty())
     diagnostics.error("split.superelements", deck.locate({}), "a deck with superelements is not split",
@@ -89,6 +107,7 @@ Structure make_structure(const records::Deck& deck, const fe::Model& model, Diag
   select_sets(model.subcase(), structure.deck);
   structure.elements = list_elements(structure.deck);
   structure.rigid = list_rigid(structure.deck);
+  find_connected(model, structure.elements);
   for (const auto& node : model.nodes()) {
     if (node.num_dofs != 6) continue;
     structure.position[node.id] = node.x;

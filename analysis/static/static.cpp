@@ -142,7 +142,11 @@ StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver
   if (is_nonlinear && asks_for(requests, "GPFORCE"))
     diagnostics.warning("cli.nonlinear-output", deck.locate({}), "GPFORCE lists forces of linear elements alone",
                         "leave it out, or give --linear");
-  if (!listing) note_requests(deck, requests, {{"ESE", "--f06 FILE, or -o FILE.h5,"}}, diagnostics);
+  if (!listing)
+    note_requests(
+        deck, requests,
+        {{"ESE", "--f06 FILE, or -o FILE.h5,"}, {"GPSTRESS", "--f06 FILE, or --op2 FILE,"}, {"STRFIELD", "--op2 FILE"}},
+        diagnostics);
   if (is_nonlinear && !requests.combinations.empty())
     diagnostics.error("cli.nonlinear-combination", deck.locate({}),
                       "SUBCOM, SYMCOM or REPCASE adds subcases, which nonlinear solutions do not allow",

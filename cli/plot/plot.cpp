@@ -52,7 +52,9 @@ void print_plots(const std::vector<report::Plot>& plots, const Console& console)
   std::string text;
   for (const auto& plot : plots) {
     auto named = plot;
-    if (named.title.empty()) named.title = named.y_label;
+    // No axis has room for its label here.
+    if (!named.y_label.empty() && named.title != named.y_label)
+      named.title += (named.title.empty() ? "" : ": ") + named.y_label;
     text += report::draw_text(named, choose_width(), height, has_color);
   }
   console.print_data(text);

@@ -1,13 +1,14 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
-#include <unordered_map>
 
 #include "base/number_text.hpp"
-#include "fe/cards/maker.hpp"
+#include "fe/cards/shell_card.hpp"
 #include "fe/cards/shell_patch.hpp"
 #include "fe/elements/beam.hpp"
 #include "fe/elements/bush.hpp"
@@ -19,84 +20,15 @@ namespace {
 constexpr int kMaxShrinks = 4;        ///< halvings of the square of a connector at the rim of its patch
 constexpr double kNoLength = 1e-6;    ///< of the diameter: ends that coincide
 constexpr double kMaxAngleDeg = 20;   ///< between the shells (GSPROJ of SWLDPRM)
-constexpr double kContinues = 0.7;    ///< cosine between the normals of a shell and of one that continues it
 constexpr double kEqualAxes = 1e-6;   ///< difference of components of a unit vector
 constexpr double kShearFactor = 0.9;  ///< of a round section (PWELD)
 
-using FacetList = std::vector<const ShellFacet*>;
-
-/// Shells of the deck as facets, by element, property and grid.
-class Facets {
- public:
-  explicit Facets(Maker& maker) : maker_(maker) {
-    for (const auto& shell : maker.deck().shells) {
-      ShellFacet facet;
-      facet.element = shell.id;
-      facet.property = shell.pid;
-      if (!fill(facet, shell.grids, shell.midsides)) continue;
-      facets_.push_back(std::move(facet));
-      const auto& evaluated = maker.deck().temperatures.properties;
-      const auto of_deck = evaluated.find(shell.pid);
-      properties_.push_back(of_deck == evaluated.end() ? shell.pid : of_deck->second);
-    }
-    for (std::size_t i = 0; i < facets_.size(); ++i) {
-      const auto* facet = &facets_[i];
-      by_element_[facet->element] = facet;
-      by_property_[properties_[i]].push_back(facet);
-      for (int k = 0; k < facet->num_corners; ++k) by_node_[facet->nodes[static_cast<std::size_t>(k)]].push_back(facet);
-    }
-  }
-
-  /// Facet with these corners and midside grids (0: none); false without its grids.
-  bool fill(ShellFacet& facet, const std::vector<int>& corners, const std::vector<int>& midsides) const {
-    facet.num_corners = static_cast<int>(corners.size());
-    for (const int g : corners) facet.nodes.push_back(maker_.nodes().find_node(g));
-    for (const int g : midsides) {
-      facet.has_midside.push_back(g > 0);
-      if (g > 0) facet.nodes.push_back(maker_.nodes().find_node(g));
-    }
-    facet.x.resize(3, static_cast<Eigen::Index>(facet.nodes.size()));
-    for (std::size_t i = 0; i < facet.nodes.size(); ++i) {
-      if (facet.nodes[i] < 0 || maker_.nodes().node(facet.nodes[i]).num_dofs != 6) return false;
-      facet.x.col(static_cast<Eigen::Index>(i)) = maker_.nodes().node(facet.nodes[i]).x;
-    }
-    facet.centre = facet.x.leftCols(facet.num_corners).rowwise().mean();
-    const auto side = [&](int a, int b) { return Vector3d(facet.x.col(b) - facet.x.col(a)); };
-    facet.normal = side(0, 2).cross(facet.num_corners == 4 ? side(1, 3) : side(0, 1)).normalized();
-    facet.radius = (facet.x.colwise() - facet.centre).colwise().norm().maxCoeff();
-    return true;
-  }
-
-  const ShellFacet* find_element(int id) const {
-    const auto found = by_element_.find(id);
-    return found == by_element_.end() ? nullptr : found->second;
-  }
-  FacetList list_property(int pid) const {
-    const auto found = by_property_.find(pid);
-    return found == by_property_.end() ? FacetList{} : found->second;
-  }
-  /// The shell and those that share a grid with it and continue it: no webs across it.
-  FacetList list_around(const ShellFacet& facet) const {
-    std::set<int> seen{facet.element};
-    FacetList list{&facet};
-    for (int k = 0; k < facet.num_corners; ++k)
-      for (const auto* other : by_node_.at(facet.nodes[static_cast<std::size_t>(k)]))
-        if (seen.insert(other->element).second && std::abs(other->normal.dot(facet.normal)) > kContinues)
-          list.push_back(other);
-    return list;
-  }
-
- private:
-  Maker& maker_;
-  std::vector<ShellFacet> facets_;
-  std::vector<int> properties_;
-  std::unordered_map<int, const ShellFacet*> by_element_;
-  std::unordered_map<int, FacetList> by_property_, by_node_;
-};
+using PatchEnds = std::array<PatchEnd, 2>;
 
 /// One end: the shells on which it is, and its point.
 struct End {
-  FacetList patch;
+  FacetList patch;  ///< empty with `of_property`
+  const FacetTree* of_property = nullptr;
   std::string name;  ///< "shell 7", "property 3"
   FacetPoint at;
 };
@@ -105,16 +37,24 @@ class ConnectorMaker {
  public:
   explicit ConnectorMaker(Maker& maker)
       : maker_(maker),
-        facets_(maker),
+        facets_(maker.deck(), maker.nodes()),
         pfast_(maker.deck().special.pfast),
         pweld_(maker.deck().special.pweld),
-        pshell_(maker.deck().pshell) {}
+        pshell_(maker.deck().pshell),
+        pcomp_(maker.deck().pcomp),
+        shell_cards_(maker.deck().shells) {}
 
   void make(const records::Cfast& card) {
-    who_ = "CFAST " + std::to_string(card.id);
-    at_ = card.at;
+    begin("CFAST", card.id, card.at);
     const auto* property = pfast_.find(card.pid);
     if (!property) return maker_.report_missing_property(card.pid, "PFAST", who_, card.at);
+    if (card.gb == 0 && !check_sides(card.ida, card.idb, card.by_elements ? "shell" : "property")) return;
+    if (has_no_stiffness(*property) && reported_.insert(property->id).second)
+      maker_.diagnostics().warning(
+          "fe.connector-stiffness", maker_.deck().locate(property->at),
+          "PFAST " + std::to_string(property->id) +
+              " has no stiffness: KT1 to KR3 are zero or blank, and its fasteners join nothing",
+          "give KT1 to KR3, or delete the fasteners");
     std::array<End, 2> ends;
     const std::array<int, 2> ids{card.ida, card.idb};
     for (std::size_t k = 0; k < 2; ++k)
@@ -135,8 +75,7 @@ class ConnectorMaker {
   }
 
   void make(const records::Cweld& card) {
-    who_ = "CWELD " + std::to_string(card.id);
-    at_ = card.at;
+    begin("CWELD", card.id, card.at);
     const auto* property = pweld_.find(card.pid);
     if (!property) return maker_.report_missing_property(card.pid, "PWELD", who_, card.at);
     const auto* material = maker_.find_material(property->mid, "PWELD " + std::to_string(property->id), property->at);
@@ -149,6 +88,9 @@ class ConnectorMaker {
     }
     if (card.format == "GRIDID" && card.grids_b.empty()) return fail_point();
     if (card.format != "GRIDID" && card.idb == 0) return fail_point();
+    if (card.format != "GRIDID" && card.gb == 0 &&
+        !check_sides(card.ida, card.idb, card.format == "PARTPAT" ? "property" : "shell"))
+      return;
     const std::array<int, 2> ids{card.ida, card.idb};
     for (std::size_t k = 0; k < 2; ++k) {
       bool is_found = false;
@@ -162,11 +104,11 @@ class ConnectorMaker {
       if (!is_found) return;
     }
     if (!place(ends, card.gs, card.ga, card.gb, card.xs)) return;
-    std::optional<std::array<PointMotion, 2>> motion;
+    std::optional<PatchEnds> motion;
     if (card.format == "ELPAT" || card.format == "PARTPAT")
       motion = fit_ends(ends, property->d);
     else
-      motion = {calc_facet_motion(ends[0].at), calc_facet_motion(ends[1].at)};
+      motion = {follow_facet(ends[0].at), follow_facet(ends[1].at)};
     if (!motion) return;
     double length = (ends[1].at.x - ends[0].at.x).norm();
     add_beam(card, *property, *material, *motion, ends[0].at.x, ends[1].at.x,
@@ -175,7 +117,27 @@ class ConnectorMaker {
   }
 
  private:
+  void begin(const char* card, int id, const records::CardLocation& at) {
+    who_ = std::string(card) + " " + std::to_string(id);
+    at_ = at;
+    shells_.clear();
+  }
+
   static std::vector<int> list_core_dofs() { return {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}; }
+
+  static bool has_no_stiffness(const records::Pfast& p) {
+    const auto is_zero = [](double k) { return k == 0; };
+    return std::all_of(p.kt.begin(), p.kt.end(), is_zero) && std::all_of(p.kr.begin(), p.kr.end(), is_zero);
+  }
+
+  /// A patch that is joined to itself has both ends at one point.
+  bool check_sides(int a, int b, const char* what) {
+    if (a != b) return true;
+    maker_.error("fe.connector-sides", at_,
+                 who_ + " names " + what + " " + std::to_string(a) + " on both sides: it would join a point to itself",
+                 std::string("name the ") + what + " of the other side");
+    return false;
+  }
 
   void fail_point() {
     maker_.error("fe.connector-form", at_, who_ + " joins a point to a patch: side B names no shell",
@@ -183,9 +145,9 @@ class ConnectorMaker {
   }
 
   bool find_property(int pid, End& end) {
-    end.patch = facets_.list_property(pid);
+    end.of_property = facets_.find_property(pid);
     end.name = "property " + std::to_string(pid);
-    if (!end.patch.empty()) return true;
+    if (end.of_property) return true;
     maker_.error("fe.connector-shell", at_,
                  who_ + " names property " + std::to_string(pid) + ", of which the deck has no shell",
                  "correct the id");
@@ -200,6 +162,7 @@ class ConnectorMaker {
       return false;
     }
     end.patch = facets_.list_around(*facet);
+    shells_.insert(id);
     return true;
   }
   /// GRIDID: a facet of the grids of the card.
@@ -241,12 +204,14 @@ class ConnectorMaker {
       const int own = k == 0 ? ga : gb;
       const auto place = own > 0 ? find_place(own) : std::optional(k == 0 || own > 0 || gs > 0 ? from : ends[0].at.x);
       if (!place) return false;
-      const auto found = project(ends[k].patch, *place);
+      const auto found = ends[k].of_property ? ends[k].of_property->project(*place) : project(ends[k].patch, *place);
       if (!found) {
-        report_projection(ends[k], "its place");
+        maker_.error("fe.connector-projection", at_, who_ + ": its place has no projection on " + ends[k].name,
+                     "move it onto the shells of both sides, or name other shells");
         return false;
       }
       ends[k].at = *found;
+      add_shell(*found);
     }
     const double cosine = std::abs(ends[0].at.normal.dot(ends[1].at.normal));
     if (cosine < std::cos(kMaxAngleDeg * std::numbers::pi / 180))
@@ -258,15 +223,14 @@ class ConnectorMaker {
     return true;
   }
 
-  void report_projection(const End& end, const char* what) {
-    maker_.error("fe.connector-projection", at_, who_ + ": " + what + " has no projection on " + end.name,
-                 "move it onto the shells of both sides, or name other shells");
+  void add_shell(const FacetPoint& point) {
+    if (point.facet->element > 0) shells_.insert(point.facet->element);
   }
 
   /// Motion of both ends by the squares of the area of the section around them.
-  std::optional<std::array<PointMotion, 2>> fit_ends(const std::array<End, 2>& ends, double diameter) {
+  std::optional<PatchEnds> fit_ends(const std::array<End, 2>& ends, double diameter) {
     const Vector3d chord = ends[1].at.x - ends[0].at.x;
-    std::array<PointMotion, 2> motion;
+    PatchEnds motion;
     for (std::size_t k = 0; k < 2; ++k) {
       const auto& end = ends[k];
       const Vector3d axis = chord.norm() > kNoLength * diameter ? Vector3d(chord.normalized()) : end.at.normal;
@@ -274,9 +238,9 @@ class ConnectorMaker {
       Vector3d along = end.at.facet->x.col(1) - end.at.facet->x.col(0);
       along = (along - along.dot(axis) * axis).normalized();
       const Vector3d across = axis.cross(along);
-      FacetList near;  // of a property with many shells those within reach of the square
-      for (const auto* facet : end.patch)
-        if ((facet->centre - end.at.x).norm() <= facet->radius + diameter) near.push_back(facet);
+      // Facets that the square may be on.
+      const FacetList near =
+          end.of_property ? end.of_property->list_near(end.at.x, diameter) : list_near(end.patch, end.at.x, diameter);
       double half = 0.25 * std::sqrt(std::numbers::pi) * diameter;
       std::vector<FacetPoint> points;
       for (int i = 0; i <= kMaxShrinks && points.size() < 4; ++i, half /= 2) {
@@ -287,10 +251,15 @@ class ConnectorMaker {
         }
       }
       if (points.size() < 4) {
-        report_projection(end, "the square of its section");
+        maker_.error("fe.connector-projection", at_,
+                     who_ + ": the square of its section reaches beyond " + end.name + ", also with " +
+                         show_number(diameter / (1 << kMaxShrinks)) + " in place of the diameter " +
+                         show_number(diameter) + ": its place is on the rim",
+                     "move its place away from the rim, or name shells that continue there");
         return std::nullopt;
       }
-      motion[k] = fit_motion(points, end.at.x);
+      motion[k] = fit_points(points, end.at.x);
+      for (const auto& point : points) add_shell(point);
     }
     return motion;
   }
@@ -322,9 +291,20 @@ class ConnectorMaker {
     return R;
   }
 
+  /// Thickness of the shell of an end: mean of T1... of the element, as its stiffness has it, T of PSHELL, plies.
   double find_thickness(const End& end) const {
-    const auto* property = pshell_.find(end.at.facet->property);
-    return property && property->t ? *property->t : 0;
+    const int pid = end.at.facet->property;
+    if (const auto* laminate = pcomp_.find(pid)) {
+      double sum = 0;
+      for (const auto& ply : laminate->plies) sum += ply.t;
+      return sum;
+    }
+    const auto* property = pshell_.find(pid);
+    const double own = property && property->t ? *property->t : 0;
+    const auto* shell = shell_cards_.find(end.at.facet->element);
+    if (!shell || shell->t.empty()) return own;
+    const auto corners = list_thicknesses(*shell, own);
+    return std::accumulate(corners.begin(), corners.end(), 0.0) / static_cast<double>(corners.size());
   }
 
   /// ALIGN: the beam is between the grids themselves.
@@ -336,16 +316,14 @@ class ConnectorMaker {
       maker_.error("fe.zero-length", at_, who_ + " has its grids at the same place", "correct the grids");
       return;
     }
-    std::array<PointMotion, 2> motion;
-    // Grids whose rotations take part too: the blocks of add() have translations, these six columns.
     whole_ = {a, b};
-    add_beam(card, property, material, motion, x_a, x_b, (x_b - x_a).normalized(), 0);
+    add_beam(card, property, material, {}, x_a, x_b, (x_b - x_a).normalized(), 0);
     whole_.reset();
   }
 
   /// \param e1  along the beam. \param spot_length  SPOT: length of the stiffness; 0: by LDMIN and LDMAX.
   void add_beam(const records::Cweld& card, const records::Pweld& property, const records::Mat1& material,
-                const std::array<PointMotion, 2>& motion, const Vector3d& x_a, const Vector3d& x_b, const Vector3d& e1,
+                const PatchEnds& motion, const Vector3d& x_a, const Vector3d& x_b, const Vector3d& e1,
                 double spot_length) {
     const double d = property.d, length = (x_b - x_a).norm(), area = std::numbers::pi * d * d / 4,
                  inertia = std::numbers::pi * std::pow(d, 4) / 64;
@@ -385,30 +363,37 @@ class ConnectorMaker {
     add(card.id, "CWELD", motion, material.rho * area * length, std::move(core), material.ge);
   }
 
-  void add(int id, const char* card, const std::array<PointMotion, 2>& motion, double mass,
-           std::unique_ptr<const Element> core, double ge) {
+  void add(int id, const char* card, const PatchEnds& motion, double mass, std::unique_ptr<const Element> core,
+           double ge) {
     std::map<int, Eigen::Index> slots;
-    if (whole_) {
-      slots[(*whole_)[0]] = 0;
-      slots[(*whole_)[1]] = 1;
-    }
+    if (whole_) slots = {{(*whole_)[0], 0}, {(*whole_)[1], 1}};
     for (const auto& end : motion)
-      for (const auto& [node, block] : end) slots.try_emplace(node, static_cast<Eigen::Index>(slots.size()));
+      for (const auto& [node, shares] : end.shares) slots.try_emplace(node, static_cast<Eigen::Index>(slots.size()));
     std::vector<int> nodes(slots.size());
     for (const auto& [node, slot] : slots) nodes[static_cast<std::size_t>(slot)] = node;
     ConnectorData data;
     data.mass = mass;
+    data.shells.assign(shells_.begin(), shells_.end());
     data.G = MatrixXd::Zero(12, 6 * static_cast<Eigen::Index>(nodes.size()));
     data.weights = MatrixXd::Zero(2, static_cast<Eigen::Index>(nodes.size()));
     if (whole_) {
       data.G.setIdentity();
       data.weights.setIdentity();
     }
-    for (int k = 0; k < 2; ++k)
-      for (const auto& [node, block] : motion[static_cast<std::size_t>(k)]) {
-        data.G.block<6, 3>(6 * k, 6 * slots.at(node)) = block;
-        data.weights(k, slots.at(node)) = block.topRows<3>().trace() / 3;
+    for (int k = 0; k < 2 && !whole_; ++k) {
+      const PatchEnd& end = motion[static_cast<std::size_t>(k)];
+      auto& [x, shares, rotation] = data.ends.emplace_back();
+      x = end.x;
+      shares = MatrixXd::Zero(4, static_cast<Eigen::Index>(nodes.size()));
+      rotation = end.rotation;
+      for (const auto& [node, of_points] : end.shares) {
+        const Eigen::Index slot = slots.at(node);
+        shares.col(slot) = of_points;
+        auto block = data.G.block<6, 3>(6 * k, 6 * slot);
+        for (Eigen::Index p = 0; p < 4; ++p) block += of_points[p] * end.motion.middleCols<3>(3 * p);
+        data.weights(k, slot) = block.topRows<3>().trace() / 3;
       }
+    }
     auto gdofs = maker_.list_gdofs(nodes);
     maker_.add(
         std::make_unique<Connector>(id, card, std::move(nodes), std::move(gdofs), std::move(data), std::move(core)),
@@ -416,13 +401,17 @@ class ConnectorMaker {
   }
 
   Maker& maker_;
-  Facets facets_;
+  ShellFacets facets_;
   RecordIndex<records::Pfast> pfast_;
   RecordIndex<records::Pweld> pweld_;
   RecordIndex<records::Pshell> pshell_;
+  RecordIndex<records::Pcomp> pcomp_;
+  RecordIndex<records::ShellElement> shell_cards_;
+  std::set<int> reported_;  ///< PFAST
   std::string who_;
   records::CardLocation at_;
-  std::optional<std::array<int, 2>> whole_;
+  std::set<int> shells_;                     ///< that the ends of the card are on
+  std::optional<std::array<int, 2>> whole_;  ///< ends that are grids, with their rotations
 };
 
 }  // namespace

@@ -68,9 +68,11 @@ class MaterialMaker {
       return std::nullopt;
     }
     SolidMaterial material;
-    material.C.topLeftCorner<3, 3>().setConstant(2 * m->G * m->nu / (1 - 2 * m->nu));
-    material.C.diagonal().head<3>().array() += 2 * m->G;
-    material.C.diagonal().tail<3>().setConstant(m->G);
+    // Solids take E and NU; a G that differs is of beams and transverse shear (Quick Reference Guide, MAT1).
+    const double G = m->E > 0 ? m->E / (2 * (1 + m->nu)) : m->G;
+    material.C.topLeftCorner<3, 3>().setConstant(2 * G * m->nu / (1 - 2 * m->nu));
+    material.C.diagonal().head<3>().array() += 2 * G;
+    material.C.diagonal().tail<3>().setConstant(G);
     material.rho = m->rho;
     material.expansion.alpha.head<3>().setConstant(m->alpha);
     material.expansion.tref = m->tref;

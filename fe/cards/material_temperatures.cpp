@@ -1,16 +1,20 @@
 #include "fe/cards/material_temperatures.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <initializer_list>
 #include <iterator>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <unordered_map>
 #include <vector>
 
+#include "base/number_text.hpp"
+#include "fe/cards/shell_patch.hpp"
 #include "fe/cards/temperature_set.hpp"
 #include "formats/records/selection.hpp"
 
@@ -22,14 +26,16 @@ using records::Deck;
 /// Elements of one material or property at one temperature share its copy.
 class Evaluator {
  public:
-  Evaluator(const Deck& deck, int set, Diagnostics& diagnostics)
+  Evaluator(const Deck& deck, int set, const NodeTable& nodes, Diagnostics& diagnostics)
       : source_(deck),
         deck_(std::make_unique<Deck>(deck)),
+        nodes_(nodes),
         temperatures_(deck.temperatures, set),
         set_(set),
         diagnostics_(diagnostics) {
     for (const auto& t : deck.temperatures.materials) tables_[t.mid] = &t;
     for (const auto& t : deck.temperatures.tables) curves_[t.id] = &t;
+    for (const auto& t : deck.temperatures.materials) check_material(t);
     const auto raise = [this](const auto& records) {
       for (const auto& r : records) next_ = std::max(next_, r.id);
     };
@@ -40,7 +46,7 @@ class Evaluator {
     raise(deck.psolid), raise(s.pbend), raise(s.pweld);
   }
 
-  std::unique_ptr<const Deck> evaluate() {
+  EvaluatedDeck evaluate() {
     Deck& d = *deck_;
     for (auto& e : d.beams)
       if (e.is_cbeam)
@@ -59,19 +65,76 @@ class Evaluator {
     for (auto& e : d.shear_panels)
       move(e, TemperatureKind::Plate, {e.grids.begin(), e.grids.end()}, "CSHEAR", d.pshear);
     for (auto& e : d.solids) move(e, TemperatureKind::Grids, join(e.corners, e.midsides), e.card.c_str(), d.psolid);
-    for (auto& e : d.special.cweld) {
-      std::vector<int> grids;
-      for (const int g : {e.gs, e.ga, e.gb})
-        if (g > 0) grids.push_back(g);
-      move(e, TemperatureKind::Grids, grids, "CWELD", d.special.pweld);
-    }
+    for (auto& e : d.special.cweld)
+      if (needs_temperature(e, d.special.pweld))
+        move(e, TemperatureKind::Grids, list_weld_grids(e), "CWELD", d.special.pweld);
     if (num_missing_ > 1 && first_missing_)
       first_missing_->what += " (and " + std::to_string(num_missing_ - 1) + " elements more)";
     if (first_missing_) diagnostics_.add(*first_missing_);
-    return std::move(deck_);
+    return {std::move(deck_), std::move(copies_)};
   }
 
  private:
+  /// Reports a MATTi without its MATi.
+  void check_material(const records::MaterialTables& t) {
+    const auto& d = source_;
+    const auto has = [&](const auto& records) {
+      return std::any_of(records.begin(), records.end(), [&](const auto& r) { return r.id == t.mid; });
+    };
+    const std::pair<const char*, bool> kinds[] = {
+        {"MAT1", has(d.mat1)}, {"MAT2", has(d.mat2)}, {"MAT8", has(d.mat8)}, {"MAT9", has(d.mat9)}};
+    std::string other;
+    for (const auto& [name, is_found] : kinds) {
+      if (is_found && t.material == name) return;
+      if (is_found) other = name;
+    }
+    if (d.is_refused(t.mid, {t.material})) return;
+    const std::string number = t.material.substr(3), id = std::to_string(t.mid);
+    diagnostics_.error(
+        "fe.missing-material", source_.locate(t.at),
+        "MATT" + number + " " + id + " refers to " + t.material + " " + id +
+            (other.empty() ? ", which the deck does not define" : ", but material " + id + " is a " + other),
+        other.empty() ? "add the " + t.material + " or correct the id"
+                      : "write MATT" + other.substr(3) + " with its fields, or correct the id");
+  }
+
+  template <class Properties>
+  bool needs_temperature(const records::Cweld& weld, const Properties& properties) {
+    const auto found = find_record(properties, weld.pid);
+    return found && tables_.count(properties[*found].mid) > 0;
+  }
+
+  /// Grids of the two shells on which a weld ends; of ALIGN and GRIDID its own. Without a place on the shells none: the
+  /// maker of the element reports it.
+  std::vector<int> list_weld_grids(const records::Cweld& weld) {
+    if (weld.format == "ALIGN") return {weld.ga, weld.gb};
+    if (weld.format == "GRIDID") {
+      auto grids = weld.grids_a;
+      grids.insert(grids.end(), weld.grids_b.begin(), weld.grids_b.end());
+      return grids;
+    }
+    if (!facets_) facets_ = std::make_unique<ShellFacets>(*deck_, nodes_);
+    std::vector<int> grids;
+    for (const auto& [id, own] : {std::pair(weld.ida, weld.ga), std::pair(weld.idb, weld.gb)}) {
+      const int place = own > 0 ? own : weld.gs > 0 ? weld.gs : weld.ga;
+      const int node = place > 0 ? nodes_.find_node(place) : -1;
+      const auto* named = facets_->find_element(id);
+      const Vector3d x = node >= 0 ? nodes_.node(node).x : weld.xs;
+      FacetList patch;
+      const FacetTree* of_property = weld.format == "PARTPAT" ? facets_->find_property(id) : nullptr;
+      if (of_property)
+        patch = of_property->facets();
+      else if (named && weld.format != "PARTPAT")
+        patch = weld.format == "ELPAT" ? facets_->list_around(*named) : FacetList{named};
+      const auto at = of_property ? of_property->project(x) : project(patch, x);
+      if (at)
+        for (const int k : at->facet->nodes) grids.push_back(nodes_.node(k).id);
+      else if (!patch.empty())
+        for (const int k : patch.front()->nodes) grids.push_back(nodes_.node(k).id);
+    }
+    return grids;
+  }
+
   static std::vector<int> join(std::vector<int> corners, const std::vector<int>& midsides) {
     std::copy_if(midsides.begin(), midsides.end(), std::back_inserter(corners), [](int g) { return g != 0; });
     return corners;
@@ -128,6 +191,7 @@ class Evaluator {
       property.id = copy->second;
       for (int* id : list_materials(property)) *id = place(*id, *T);
       deck_->temperatures.properties[property.id] = element.pid;
+      copies_[property.id] = {element.pid, *T};
       properties.push_back(std::move(property));
     }
     element.pid = copy->second;
@@ -162,7 +226,10 @@ class Evaluator {
     if (name == "MAT2") is_found = add_mat2(*tables->second, copy->second, T);
     if (name == "MAT8") is_found = add_mat8(*tables->second, copy->second, T);
     if (name == "MAT9") is_found = add_mat9(*tables->second, copy->second, T);
-    if (!is_found) copy->second = mid;  // of another kind: the maker of the element reports it
+    if (is_found)
+      copies_[copy->second] = {mid, T};
+    else
+      copy->second = mid;  // check_material() has reported it
     return copy->second;
   }
 
@@ -271,6 +338,8 @@ class Evaluator {
 
   const Deck& source_;
   std::unique_ptr<Deck> deck_;
+  const NodeTable& nodes_;
+  std::unique_ptr<ShellFacets> facets_;
   const TemperatureSet temperatures_;
   int set_ = 0, next_ = 0;
   Diagnostics& diagnostics_;
@@ -279,6 +348,7 @@ class Evaluator {
   std::map<const void*, std::unordered_map<int, std::size_t>> index_;  ///< by list of records: id, index
   std::map<std::tuple<const void*, int, double>, int> properties_;     ///< by list, id and temperature
   std::map<std::pair<int, double>, int> materials_;
+  std::map<int, std::pair<int, double>> copies_;
   std::set<std::pair<int, int>> reported_;
   std::optional<Diagnostic> first_missing_;
   int num_missing_ = 0;
@@ -286,10 +356,33 @@ class Evaluator {
 
 }  // namespace
 
-std::unique_ptr<const Deck> evaluate_materials(const Deck& deck, const records::Subcase& subcase,
-                                               Diagnostics& diagnostics) {
+std::string EvaluatedDeck::name_originals(const std::string& text) const {
+  constexpr std::string_view kDigits = "0123456789";
+  constexpr std::string_view kNames[] = {"MAT", "MID", "P", "material", "property"};
+  std::string named;
+  std::size_t done = 0;
+  for (auto first = text.find_first_of(kDigits); first != std::string::npos;) {
+    const auto last = std::min(text.find_first_not_of(kDigits, first), text.size());
+    const auto before = first >= 2 && text[first - 1] == ' ' ? text.rfind(' ', first - 2) + 1 : first;
+    const auto name = std::string_view(text).substr(before, first - before);
+    int id = 0;
+    std::from_chars(text.data() + first, text.data() + last, id);
+    const auto copy = copies.find(id);
+    if (copy != copies.end() &&
+        std::any_of(std::begin(kNames), std::end(kNames), [&](auto start) { return name.starts_with(start); })) {
+      named.append(text, done, first - done);
+      named += std::to_string(copy->second.first) + " at temperature " + show_number(copy->second.second);
+      done = last;
+    }
+    first = text.find_first_of(kDigits, last);
+  }
+  return named.append(text, done);
+}
+
+EvaluatedDeck evaluate_materials(const Deck& deck, const records::Subcase& subcase, const NodeTable& nodes,
+                                 Diagnostics& diagnostics) {
   const auto& tables = deck.temperatures.materials;
-  if (tables.empty()) return nullptr;
+  if (tables.empty()) return {};
   const bool by_initial = subcase.material_temperature == 0;
   const int set = by_initial ? subcase.initial_temperature : subcase.material_temperature;
   if (set == 0) {
@@ -297,16 +390,16 @@ std::unique_ptr<const Deck> evaluate_materials(const Deck& deck, const records::
                         "MATT" + tables.front().material.substr(3) + " " + std::to_string(tables.front().mid) +
                             " has no effect: no temperature is selected at which materials are evaluated",
                         "write TEMPERATURE(MATERIAL) = n in the case control");
-    return nullptr;
+    return {};
   }
   if (TemperatureSet(deck.temperatures, set).is_empty()) {
     const char* command = by_initial ? "TEMPERATURE(INITIAL)" : "TEMPERATURE(MATERIAL)";
     diagnostics.error("fe.missing-load", deck.locate(subcase.find_command(command)),
                       "temperature set " + std::to_string(set) + " has no TEMP, TEMPD, TEMPRB or TEMPP1 card",
                       std::string("correct ") + command + " or add its cards");
-    return nullptr;
+    return {};
   }
-  return Evaluator(deck, set, diagnostics).evaluate();
+  return Evaluator(deck, set, nodes, diagnostics).evaluate();
 }
 
 }  // namespace bough::fe

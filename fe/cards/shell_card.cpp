@@ -35,6 +35,13 @@ std::string check_facet(const std::vector<Vector3d>& x) {
 
 }  // namespace
 
+std::vector<double> list_thicknesses(const records::ShellElement& card, double of_property) {
+  std::vector<double> thicknesses;
+  for (const double t : card.t)
+    thicknesses.push_back(std::isnan(t) ? of_property : card.relative_thickness ? t * of_property : t);
+  return thicknesses;
+}
+
 std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections, const records::ShellElement& card) {
   ResolvedShell r;
   r.card = &card;
@@ -59,8 +66,7 @@ std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections
                   "give T of the property or the thickness of each corner");
       return std::nullopt;
     }
-    const double own = known.value_or(0);
-    for (double t : card.t) r.thickness.push_back(std::isnan(t) ? own : card.relative_thickness ? t * own : t);
+    r.thickness = list_thicknesses(card, known.value_or(0));
     mean = std::accumulate(r.thickness.begin(), r.thickness.end(), 0.0) / static_cast<double>(r.thickness.size());
     if (std::all_of(r.thickness.begin(), r.thickness.end(), [&](double t) { return t == r.thickness[0]; }))
       r.thickness.clear();

@@ -22,6 +22,9 @@ struct ResolvedShell {
   std::vector<double> thickness;
 };
 
+/// Thicknesses of the corners: T1... with TFLAG applied, the property's where blank; empty without T1...
+std::vector<double> list_thicknesses(const records::ShellElement& card, double of_property);
+
 /// Empty after reporting fe.missing-grid, fe.missing-property, fe.bad-property or fe.bad-facet.
 std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections, const records::ShellElement& card);
 

@@ -12,7 +12,10 @@ namespace bough::fe {
 
 namespace {
 constexpr double kDegree = std::numbers::pi / 180;
-}
+
+/// Shear modulus of membrane and bending: by E and NU, while G is of transverse shear (Quick Reference Guide, MAT1).
+double find_in_plane_modulus(const records::Mat1& m) { return m.E > 0 ? m.E / (2 * (1 + m.nu)) : m.G; }
+}  // namespace
 
 ShellSections::ShellSections(Maker& maker)
     : maker_(maker),
@@ -91,7 +94,8 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
   }
   const records::Mat1* m = maker_.find_material(mid, who, at);
   if (!m) return std::nullopt;
-  auto p = make_isotropic_plane(m->E, m->G, m->nu, m->rho);
+  auto p = make_isotropic_plane(m->E, find_in_plane_modulus(*m), m->nu, m->rho);
+  p.G = m->G * Eigen::Matrix2d::Identity();
   p.alpha = {m->alpha, m->alpha, 0};
   p.tref = m->tref;
   p.ge = m->ge;
@@ -109,7 +113,8 @@ std::optional<PlaneMaterial> ShellSections::find_plane_strain(const records::Psh
     return std::nullopt;
   }
   if (!maker_.find_material(p.mid1, name, p.at)) return std::nullopt;
-  auto plane = make_isotropic_plane(m->E, m->G, m->nu, m->rho);
+  auto plane = make_isotropic_plane(m->E, find_in_plane_modulus(*m), m->nu, m->rho);
+  plane.G = m->G * Eigen::Matrix2d::Identity();
   const double c = m->E / ((1 + m->nu) * (1 - 2 * m->nu));
   plane.Q(0, 0) = plane.Q(1, 1) = c * (1 - m->nu);
   plane.Q(0, 1) = plane.Q(1, 0) = c * m->nu;

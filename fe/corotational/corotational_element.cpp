@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/rotation.hpp"
+#include "fe/corotational/fitted_core.hpp"
 #include "fe/elements/solve_in_range.hpp"
 #include "fe/elements/stress_state.hpp"
 
@@ -33,7 +34,11 @@ CorotationalElement::CorotationalElement(const Element& element, const std::vect
   follows_nodes_ = find_stiffness(element, nodes);
   if (!follows_nodes_) return;
   set_frame();
-  set_local_strains(element);
+  const auto* connector = dynamic_cast<const Connector*>(&element);
+  if (connector && !connector->data().ends.empty())
+    fitted_ = std::make_shared<const FittedCore>(*connector);
+  else
+    set_local_strains(element);
 }
 
 /// True when the dofs are all translations of some grids, and all rotations of some of these.

@@ -3,6 +3,7 @@
 ///
 /// Element-independent: the linear K_e in a frame that follows the nodes, and the second-order strains inside the
 /// element from its K_G. Theory: docs/theory/third-order.md (1) to (3).
+#include <memory>
 #include <vector>
 
 #include "fe/corotational/best_fit.hpp"
@@ -40,6 +41,8 @@ struct LocalSeries {
   MatrixXd internal;  ///< s x 5 m: internal forces of the stress state, second-order strains included
 };
 
+class FittedCore;
+
 class CorotationalElement {
  public:
   /// `nodes`: those that element.nodes() and gdofs() index. Both are read here only. Computes K⁺ and K_G of every unit
@@ -65,7 +68,7 @@ class CorotationalElement {
   FiniteForces calc_finite(const Eigen::Ref<const VectorXd>& u, const std::vector<Matrix3d>& rotations,
                            const ThermalState* heat = nullptr) const;
 
-  /// Parts of V, for tests: V = ½ dᵀKd + ½ Σ (F d)_m w_m + ⅛ wᵀEw, w_m = dᵀP_m d.
+  /// Parts of V, for tests (K alone of connectors on shells): V = ½ dᵀKd + ½ Σ (F d)_m w_m + ⅛ wᵀEw, w_m = dᵀP_m d.
   const MatrixXd& K() const { return K_; }
   const MatrixXd& F() const { return F_; }
   const MatrixXd& E() const { return E_; }
@@ -111,6 +114,7 @@ class CorotationalElement {
   std::vector<int> grids_, translations_, rotations_;
   double rotation_weight_ = 0;
   Matrix3d frame_inverse_ = Matrix3d::Zero();
+  std::shared_ptr<const FittedCore> fitted_;  ///< of connectors on shells, in place of F_, P_ and E_
 };
 
 }  // namespace bough::fe

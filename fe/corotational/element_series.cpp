@@ -1,6 +1,6 @@
 // Forces and deformations of an element along curves (docs/theory/third-order.md, "Along a curve"). Series end at the
 // order that the caller requests: the products of a force of order k are k² of those of order 1.
-#include "fe/corotational/corotational_element.hpp"
+#include "fe/corotational/fitted_core.hpp"
 #include "fe/corotational/series.hpp"
 #include "fe/linear/blas.hpp"
 
@@ -180,6 +180,7 @@ void CorotationalElement::calc_series(const SecondStrains& second, const Eigen::
 MatrixXd CorotationalElement::calc_forces(const Eigen::Ref<const MatrixXd>& u, int top) const {
   BOUGH_DEMAND(u.rows() == num_dofs() && top >= 2 && top <= kSeriesTop && u.cols() % top == 0);
   if (!follows_nodes_) return K_ * u;
+  if (fitted_) return fitted_->calc_forces(u, top);
   const SecondStrains second = reduce_second_strains();
   MatrixXd f(u.rows(), u.cols());
   for (Index first = 0; first < u.cols(); first += kCurvesAtOnce * top) {
@@ -210,6 +211,10 @@ LocalSeries CorotationalElement::calc_local(const Eigen::Ref<const MatrixXd>& u)
   if (!follows_nodes_) return local;
   std::vector<Motion<kSeriesTop>> motions;
   calc_motions<kSeriesTop>(u, motions, local.d);
+  if (fitted_) {
+    local.internal = fitted_->calc_internal(u);
+    return local;
+  }
   local.internal = F_ * local.d;
   for (Index m = 0; m < local.internal.rows(); ++m) {
     const MatrixXd Pd = P_[static_cast<std::size_t>(m)] * local.d;

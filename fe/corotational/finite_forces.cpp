@@ -2,7 +2,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/corotational/best_fit.hpp"
-#include "fe/corotational/corotational_element.hpp"
+#include "fe/corotational/fitted_core.hpp"
 
 namespace bough::fe {
 
@@ -149,6 +149,7 @@ FiniteForces CorotationalElement::calc_finite(const Eigen::Ref<const VectorXd>& 
     const Vector3d n = m.col(k) - c * fit.back(at) * mu;
     result.K.middleRows<3>(row_t(k)) += R * (d_m[at] - c * fit.calc_back_slope(at, mu, d_mu) - skew(n) * G);
   }
+  if (fitted_) fitted_->calc_finite(u, result);
   return result;
 }
 

@@ -61,6 +61,8 @@ class Shell final : public Element, public StressState, public StressRecovery, p
   /// own.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
+  /// Stresses of the resultants at the corners, the field through those of the quadrature points.
+  MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const override;
   /// Points for the mean of N and M likewise: those of the stresses, and the reference surface.
   std::vector<StressPoint> strain_points() const override;
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;

@@ -40,6 +40,17 @@ MatrixXd Shell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
   return calc_stress_map(section_) * calc_mean_resultants(forces, calc_shares());
 }
 
+MatrixXd Shell::calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const {
+  MatrixXd shapes(num_points(), num_nodes_);  // a row per point
+  Eigen::Index q = 0;
+  if (num_nodes_ == 4)
+    for (const auto& p : shell::calc_points<4>(get_corners<4>())) shapes.row(q++) = p.shape.transpose();
+  else
+    for (const auto& p : shell::calc_points<3>(get_corners<3>())) shapes.row(q++) = p.shape.transpose();
+  const Eigen::Map<const MatrixXd> at_points(force.data(), kNumForces, num_points());
+  return calc_stress_map(section_) * at_points * shapes.inverse().transpose();
+}
+
 std::vector<StressPoint> Shell::strain_points() const { return list_strain_points(section_); }
 
 MatrixXd Shell::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {

@@ -78,7 +78,7 @@ class Solid final : public Element, public StressState, public StressRecovery, p
   /// Stresses at the corners (6 x corners, basic axes) of internal forces (6 points): the field that is linear along
   /// each natural coordinate through those of the quadrature points, by least squares where they are more; the mean
   /// where they are fewer than the corners.
-  MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const;
+  MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const override;
   /// Strains C⁻¹ σ; if C is singular, those of minimum norm.
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
   /// Number of corners: 8, 6, 4 or 5.

@@ -18,6 +18,9 @@ class StressRecovery {
   virtual std::vector<StressPoint> stress_points() const = 0;
   /// Stresses at the points, in the order of stress_points().
   virtual MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const = 0;
+  /// Stresses at the corners of internal forces: components of stress_points() x corners; empty if the element gives
+  /// none there.
+  virtual MatrixXd calc_corner_stresses(const Eigen::Ref<const Eigen::VectorXd>& /*force*/) const { return {}; }
   /// Points of the strains: stress_points(), and for shells the reference surface ("mid").
   virtual std::vector<StressPoint> strain_points() const { return stress_points(); }
   /// Mechanical strains, without the free expansion of the material, so that σ = C ε.

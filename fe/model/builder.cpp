@@ -88,8 +88,17 @@ void ModelBuilder::make_elements(const ElementFactory& factory) {
     model_.has_damping_ = model_.has_damping_ || list.has_damping;
     for (auto& element : list.elements) model_.elements_.push_back(std::move(element));
   };
-  const auto at_temperature = evaluate_materials(deck_, model_.subcase_, diagnostics_);
-  add(factory(at_temperature ? *at_temperature : deck_, model_, diagnostics_));
+  const auto at_temperature = evaluate_materials(deck_, model_.subcase_, model_, diagnostics_);
+  if (at_temperature.deck) {
+    Diagnostics of_copies;
+    add(factory(*at_temperature.deck, model_, of_copies));
+    for (auto item : of_copies.items()) {
+      item.what = at_temperature.name_originals(item.what);
+      diagnostics_.add(std::move(item));
+    }
+  } else {
+    add(factory(deck_, model_, diagnostics_));
+  }
   report_unmodelled(deck_, model_.cards_, diagnostics_);
   ElementList direct = make_direct(deck_, model_.subcase_, model_, diagnostics_);
   if (options_.adjust_direct && !direct.elements.empty())

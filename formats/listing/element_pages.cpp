@@ -106,8 +106,10 @@ void add_force_pages(const ListedStep& step, const ListedElements& block, Pages&
   const auto& card = block.card;
   switch (block.type) {
     case 34:
+    case 117:
       begin(
-          "F O R C E S   I N   B A R   E L E M E N T S         ( C B A R )",
+          block.type == 34 ? "F O R C E S   I N   B A R   E L E M E N T S         ( C B A R )"
+                           : "F O R C E S   I N   W E L D   E L E M E N T S         ( C W E L D )",
           {"0    ELEMENT         BEND-MOMENT END-A            BEND-MOMENT END-B                - SHEAR -               "
            "AXIAL",
            "       ID.         PLANE 1       PLANE 2        PLANE 1       PLANE 2        PLANE 1       PLANE 2         "

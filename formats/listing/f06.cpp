@@ -245,6 +245,10 @@ std::string make_f06(const records::Listing& listing) {
       if (block.is_printed) detail::add_force_pages(step, block, pages);
     for (const auto& block : step.stresses)
       if (block.is_printed) detail::add_stress_pages(step, block, pages);
+    for (const auto& block : step.strains)
+      if (block.is_printed) detail::add_stress_pages(step, block, pages);
+    for (const auto& block : step.grid_stresses)
+      if (block.is_printed) detail::add_grid_stress_pages(step, block, pages);
     for (const auto& block : step.energies) add_energies(step, block, pages);
     if (!step.grid_forces.empty()) add_grid_forces(step, pages);
   }

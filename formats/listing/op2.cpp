@@ -33,8 +33,9 @@ void demand_small_ids(const records::Listing& listing) {
   };
   for (const auto& step : listing.steps) {
     for (const auto& vector : step.vectors) look(vector.id);
-    for (const auto* blocks : {&step.forces, &step.stresses})
+    for (const auto* blocks : {&step.forces, &step.stresses, &step.strains})
       for (const auto& block : *blocks) look(block.id);
+    for (const auto& block : step.grid_stresses) look(block.grid);
   }
   if (largest <= kMaxId) return;
   throw InputError("export.large-id", {},
@@ -250,11 +251,20 @@ Words make_element_ident(const ListedStep& step, const records::ListedElements& 
   return ident;
 }
 
-/// Stresses: by element, layer or corner (docs/formats/op2.md).
+/// Stress code, word 11: 1 von Mises (0 largest shear), 2 and 8 strain, 4 at the fibres.
+int find_stress_code(const records::ListedElements& block) {
+  const int von_mises = is_layered(block.type) ? 0 : 1;
+  if (!block.is_strain()) return von_mises;
+  const bool is_plate = block.type == 33 || block.type == 74;
+  const bool is_fibre = is_layered(block.type) || (is_plate && block.table == records::PointTable::FibreStrain);
+  return 10 + (is_fibre ? 4 : 0) + von_mises;
+}
+
+/// Stresses and strains: by element, layer or corner (docs/formats/op2.md).
 void add_stresses(const ListedStep& step, const records::ListedElements& block, Op2Writer& file) {
   const bool is_complex = block.imag.size() > 0;
   Words ident = make_element_ident(step, block, 5), data;
-  ident.set(10, is_layered(block.type) ? 0 : 1);  // largest shear, or von Mises
+  ident.set(10, find_stress_code(block));
   int count = 0;
   for (std::size_t k = 0; k < block.id.size(); ++k) {
     if (is_solid(block.type)) {
@@ -360,6 +370,59 @@ void add_blocks(const records::Listing& listing, const char* name,
   if (is_open) file.end_table();
 }
 
+/// Table codes of grid point stresses.
+constexpr int kSurface = 26, kVolumeDirect = 27, kVolumePrincipal = 28;
+
+void add_grid_stresses(const ListedStep& step, const records::ListedGridStresses& block, int table, Op2Writer& file) {
+  Words ident = make_ident(make_head(step, table)), data;
+  set_step(step, ident);
+  ident.set(2, block.id);
+  ident.set(7, block.cid);
+  ident.set(8, 1);
+  ident.set(9, table == kSurface ? 11 : table == kVolumeDirect ? 9 : 15);
+  ident.set(10, 1);  // von Mises
+  ident.set(11, block.cid);
+  ident.set(12, block.axis);
+  const int normal = block.normal.starts_with("X") ? block.normal[1] - '0' : 0;  // 0: R
+  ident.set(13, block.is_reversed ? -normal : normal);
+  const auto add = [&](Eigen::Index k, int first, int last) {
+    for (int c = first; c < last; ++c) data.add(block.values(k, c));
+  };
+  for (std::size_t i = 0; i < block.grid.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    data.add(10 * block.grid[i] + kDevice);
+    if (table == kSurface) {
+      data.add(block.element[i]);
+      data.add(block.fibre[i], 4);
+      add(k, 0, 8);
+    } else if (table == kVolumeDirect) {
+      add(k, 0, 8);
+    } else {
+      add(k, 11, 20);
+      add(k, 8, 11);
+      add(k, 6, 8);
+    }
+  }
+  file.add_record(ident);
+  file.add_record(data);
+}
+
+void add_grid_stress_table(const records::Listing& listing, Op2Writer& file) {
+  bool is_open = false;
+  for (const auto& step : listing.steps)
+    for (const auto& block : step.grid_stresses)
+      for (const int table : {kSurface, kVolumeDirect, kVolumePrincipal}) {
+        const bool is_of = table == kSurface
+                               ? !block.is_volume
+                               : block.is_volume && (table == kVolumeDirect ? block.has_direct : block.has_principal);
+        if (!is_of || block.grid.empty()) continue;
+        if (!is_open) file.begin_table("OGS1", "OGS1");
+        is_open = true;
+        add_grid_stresses(step, block, table, file);
+      }
+  if (is_open) file.end_table();
+}
+
 /// Function codes of word 2: real random results by frequency (SORT1) and by point (SORT2).
 constexpr int kRandomSort1 = 4000, kRandomSort2 = 6000;
 constexpr int kFrequencyAnalysis = 5;
@@ -455,6 +518,10 @@ std::string make_op2(const records::Listing& listing) {
   add_blocks(
       listing, "OES1", &ListedStep::stresses, [](int type) { return !is_layered(type); }, add_stresses, file);
   add_blocks(listing, "OES1C", &ListedStep::stresses, is_layered, add_stresses, file);
+  add_blocks(
+      listing, "OSTR1", &ListedStep::strains, [](int type) { return !is_layered(type); }, add_stresses, file);
+  add_blocks(listing, "OSTR1C", &ListedStep::strains, is_layered, add_stresses, file);
+  add_grid_stress_table(listing, file);
   for (const auto& [name, kind] : {std::pair("OUG", ListedKind::Displacement), std::pair("OVG", ListedKind::Velocity),
                                    std::pair("OAG", ListedKind::Acceleration), std::pair("OQG", ListedKind::SpcForce)})
     add_random(listing.random, name, kind, file);

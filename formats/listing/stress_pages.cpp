@@ -61,6 +61,11 @@ void add_rod_stresses(const ListedElements& block, Pages& pages) {
   }
 }
 
+void add_bush_stresses(const ListedElements& block, Pages& pages) {
+  for (std::size_t k = 0; k < block.id.size(); ++k)
+    pages.add_row(fmt::format("{:>14}   ", block.id[k]) + show_columns(block, k, 0, 6, " "));
+}
+
 void add_plate_stresses(const ListedElements& block, Pages& pages) {
   for (std::size_t k = 0; k < block.id.size(); ++k) {
     std::string text = fmt::format("0{:>8}   ", block.id[k]);
@@ -159,6 +164,8 @@ std::string name_stresses(const ListedElements& block) {
   switch (block.type) {
     case 34:
       return "S T R E S S E S   I N   B A R   E L E M E N T S          ( C B A R )";
+    case 102:
+      return "S T R E S S E S   I N   B U S H   E L E M E N T S        ( C B U S H )";
     case 2:
       return "S T R E S S E S   I N   B E A M   E L E M E N T S        ( C B E A M )";
     case 33:
@@ -181,6 +188,28 @@ std::string name_stresses(const ListedElements& block) {
     default:
       return "S T R E S S E S   I N   R O D   E L E M E N T S      ( " + space_out(block.card) + " )";
   }
+}
+
+void replace_all(const std::string& word, const std::string& by, std::string& text) {
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size()))
+    text.replace(at, word.size(), by);
+}
+
+/// Titles of strains with the blanks of Nastran's, by which readers find them.
+std::string name_strains(const ListedElements& block) {
+  std::string name = name_stresses(block);
+  replace_all("S T R E S S E S", block.type == 34 ? "S T R A I N S " : "S T R A I N S", name);
+  replace_all("I N   T E T R A", "I N    T E T R A", name);
+  return name;
+}
+
+/// Headings of stresses with words of equal length.
+void name_strain_columns(const ListedElements& block, std::string& line) {
+  replace_all("STRESSES", " STRAINS", line);
+  replace_all("STRESS", "STRAIN", line);
+  if (block.table != records::PointTable::CurvatureStrain) return;
+  replace_all("FIBER  ", "STRAIN ", line);
+  replace_all("DISTANCE ", "CURVATURE", line);
 }
 
 std::vector<std::string> name_complex_columns(int type) {
@@ -221,14 +250,21 @@ std::vector<std::string> name_complex_columns(int type) {
 }  // namespace
 
 void add_stress_pages(const ListedStep& step, const ListedElements& block, Pages& pages) {
-  const auto begin = [&](const std::vector<std::string>& columns) {
-    begin_table(step, block, name_stresses(block), columns, pages);
+  const auto begin = [&](std::vector<std::string> columns) {
+    if (block.is_strain())
+      for (auto& line : columns) name_strain_columns(block, line);
+    begin_table(step, block, block.is_strain() ? name_strains(block) : name_stresses(block), columns, pages);
   };
   if (block.imag.size() > 0) {
     begin(name_complex_columns(block.type));
     return add_complex_stresses(block, pages);
   }
   switch (block.type) {
+    case 102:
+      begin(
+          {"                  ELEMENT-ID        STRESS-TX     STRESS-TY     STRESS-TZ    STRESS-RX     STRESS-RY     "
+           "STRESS-RZ"});
+      return add_bush_stresses(block, pages);
     case 34:
       begin(
           {"  ELEMENT        SA1            SA2            SA3            SA4           AXIAL          SA-MAX         "

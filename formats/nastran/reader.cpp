@@ -1,5 +1,7 @@
 #include "formats/nastran/dynamic_reader.hpp"
 
+#include <algorithm>
+
 #include "formats/nastran/detail/builder.hpp"
 #include "formats/nastran/detail/control.hpp"
 #include "formats/nastran/detail/executive.hpp"
@@ -12,6 +14,16 @@
 
 namespace bough::nastran {
 namespace {
+
+/// Without tables the set changes no model: subcases that differ in it share theirs.
+void forget_material_temperatures(records::Deck& deck) {
+  const auto has_tables = [](const records::Deck& one) { return !one.temperatures.materials.empty(); };
+  const auto& sections = deck.super.sections;
+  if (has_tables(deck) ||
+      std::any_of(sections.begin(), sections.end(), [&](const auto& section) { return has_tables(*section.deck); }))
+    return;
+  for (auto& subcase : deck.subcases) subcase.material_temperature = 0;
+}
 
 void fill_deck(const detail::Source& source, const ReadOptions& options, records::Deck& deck,
                const detail::ControlOptions& control, Diagnostics& diagnostics) {
@@ -32,6 +44,7 @@ void fill_deck(const detail::Source& source, const ReadOptions& options, records
   detail::read_bulk(bulk.has_sections() ? bulk.main : source, first_line, options, deck, diagnostics, dynamics);
   detail::read_assigned_files(source, deck);
   detail::read_sections(bulk, component_cases, options, deck, diagnostics);
+  forget_material_temperatures(deck);
   detail::add_load_columns(columns, deck, diagnostics);
   detail::report_params(deck, options.ignore_cards, diagnostics, dynamics != nullptr && !control.is_whole);
 }
@@ -68,8 +81,11 @@ records::CaseRequests make_requests(const detail::Source& source, Diagnostics& d
   records::CaseRequests requests;
   Diagnostics ignored_diagnostics;  // reported when the deck is read
   deck.files = source.files;
-  detail::ControlOptions control{
-      .dynamics = &deck, .combinations = &requests.combinations, .combination_diagnostics = &diagnostics};
+  detail::ControlOptions control{.dynamics = &deck,
+                                 .combinations = &requests.combinations,
+                                 .combination_diagnostics = &diagnostics,
+                                 .post = &requests,
+                                 .post_diagnostics = &diagnostics};
   for (const auto& section : detail::split_bulk(source).sections) control.superelements.insert(section.id);
   detail::read_control(source, deck, ignored_diagnostics, control);
   requests.selections = std::move(deck.selections);

@@ -62,19 +62,24 @@ void UnitConverter::fail_card(const std::string& why, const std::string& advice)
   diagnostics_.error("deck.unit-card", card_->at, why, advice);
 }
 
+double UnitConverter::calc_factor(const std::string& word) const {
+  if (word == ".") return 1;
+  const auto* d = find_dimension(word);
+  BOUGH_DEMAND(d != nullptr);
+  return std::pow(factors_.mass, d->mass) * std::pow(factors_.length, d->length) * std::pow(factors_.time, d->time);
+}
+
 void UnitConverter::scale(int field, const std::string& word) {
   if (word == "." || get(field).empty()) return;
   const auto value = parse_real(get(field));
   if (value && *value == 0) return;
-  if (word == "?") {
-    fail(field, "nothing tells its dimension");
+  if (word == "?" || word == "??") {
+    fail(field, word == "?" ? "nothing tells its dimension"
+                            : "the cards that name the table give its values different dimensions");
     return;
   }
   if (!value) return;  // a word, or what the reader of the deck reports
-  const auto* d = find_dimension(word);
-  BOUGH_DEMAND(d != nullptr);
-  const double factor =
-      std::pow(factors_.mass, d->mass) * std::pow(factors_.length, d->length) * std::pow(factors_.time, d->time);
+  const double factor = calc_factor(word);
   if (std::abs(factor - 1) < 1e-14) return;
   // Fifteen digits: powers of ten give no noise in the last one.
   char text[40];

@@ -128,6 +128,8 @@ struct Pelas {
 struct Pbush {
   int id = 0;
   std::array<double, 6> k{}, b{}, ge{};
+  std::array<double, 4> rcv{1, 1, 1,
+                            1};  ///< SA ST EA ET: stress per force and moment, strain per translation, rotation
   double mass = 0;
   CardLocation at;
 };

@@ -226,6 +226,7 @@ struct OutputRequest {
   bool is_phase = false;  ///< magnitude and phase, else real and imaginary parts
   bool is_punched = false;
   bool is_printed = true;  ///< PRINT, or neither it nor PLOT and PUNCH
+  bool is_fibre = false;   ///< STRAIN(FIBER): strains of plates at Z1 and Z2
   CardLocation at;
 };
 
@@ -266,10 +267,30 @@ struct CaseCombination {
   CardLocation at;
 };
 
+/// SURFACE or VOLUME of OUTPUT(POST): elements of which grid point stresses are wanted.
+struct StressField {
+  enum class System { Basic, Element, Cord };
+  int id = 0, set = 0;  ///< set: of elements
+  bool is_volume = false;
+  std::set<std::string> fibres;  ///< SURFACE: of Z1, Z2, MID
+  System system = System::Basic;
+  int cid = 0;
+  int axis = 1;                                  ///< SURFACE: x axis of the output, 1 to 3 of the system
+  std::string normal = "R";                      ///< SURFACE: R, X1, X2, X3 of the system
+  bool is_reversed = false;                      ///< SURFACE: normal with M
+  bool is_geometric = false;                     ///< SURFACE: interpolation
+  double tolerance = 0;                          ///< [deg] SURFACE: difference of slopes; 0: no test
+  bool has_break = false;                        ///< SURFACE: BRANCH BREAK
+  bool has_principal = true, has_direct = true;  ///< VOLUME
+  CardLocation at;
+};
+
 /// Requests of the case control in addition to loads and constraints.
 struct CaseRequests {
   std::map<int, DynamicSelection> selections;  ///< by subcase; 0: a deck without SUBCASE
   std::vector<CaseCombination> combinations;
+  std::vector<StressField> stress_fields;
+  std::map<int, CaseSet> post_sets;  ///< SET after OUTPUT(POST)
 };
 
 struct DynamicDeck : Deck {

@@ -134,14 +134,13 @@ std::vector<ElementKind> make_kinds() {
   add_made(BOUGH_CARDS(special.cfast), [](const Cfast& e, View& v) {
     v.card = "CFAST";
     v.grids = {e.gs, e.ga, e.gb};
-    v.has_moments = true;
   });
   add_made(BOUGH_CARDS(special.cweld), [](const Cweld& e, View& v) {
     v.card = "CWELD";
     v.grids = {e.gs, e.ga, e.gb};
     v.grids.insert(v.grids.end(), e.grids_a.begin(), e.grids_a.end());
     v.grids.insert(v.grids.end(), e.grids_b.begin(), e.grids_b.end());
-    v.has_moments = true;
+    v.has_moments = e.format == "ALIGN";
   });
   add_made(BOUGH_CARDS(shells), [](const ShellElement& e, View& v) {
     v.card = e.card;

@@ -54,6 +54,7 @@ struct ForceElementRecord {
   double pressure = 0, specular = 0, diffuse = 0, sun_size = 0;
   Vector3d sun = Vector3d::Zero();  ///< direction to it, inertial
   bool is_one_sided = false;
+  std::vector<std::string> shaded_by;  ///< bodies whose hulls cast a shadow
   SourceLocation at;
 };
 

@@ -30,7 +30,12 @@ struct ListedVector {
   bool is_printed = true;      ///< in the f06 too
 };
 
-/// Forces or stresses of the elements of one card, in ascending order, in Nastran's columns (docs/formats/op2.md).
+/// Quantity of ListedElements: stresses; strains of plates at their fibres, or of the reference surface with
+/// curvatures.
+enum class PointTable { Stress, FibreStrain, CurvatureStrain };
+
+/// Forces, stresses or strains of the elements of one card, in ascending order, in Nastran's columns
+/// (docs/formats/op2.md).
 struct ListedElements {
   std::string card;
   int type = 0;                          ///< Nastran's element type
@@ -41,6 +46,28 @@ struct ListedElements {
   Eigen::MatrixXd imag;                  ///< of the same size, or empty: real
   bool is_phase = false;                 ///< imag not empty: they are magnitude and phase in degrees
   bool is_printed = true;
+  PointTable table = PointTable::Stress;  ///< of stresses and strains
+
+  /// Returns true if the columns are strains.
+  bool is_strain() const { return table != PointTable::Stress; }
+};
+
+/// Grid point stresses of a SURFACE or VOLUME, by grid in ascending order.
+struct ListedGridStresses {
+  int id = 0;
+  bool is_volume = false;
+  int cid = 0;                                   ///< system of the output, 0: basic
+  bool is_element_system = false;                ///< SYSTEM ELEMENT: no system
+  int axis = 1;                                  ///< SURFACE: x axis of the output, 1 to 3
+  std::string normal;                            ///< SURFACE: R, X1, X2, X3
+  bool is_reversed = false;                      ///< SURFACE: normal with M
+  bool has_direct = true, has_principal = true;  ///< VOLUME
+  bool is_printed = true;
+  std::vector<int> grid, element;  ///< of each row; element 0: mean of all elements
+  std::vector<std::string> fibre;  ///< SURFACE: Z1, Z2, MID of each row
+  /// SURFACE: x y xy, angle [deg], major, minor, largest shear, von Mises. VOLUME: xx yy zz xy yz zx, mean pressure,
+  /// von Mises, principal a b c, cosines of x to a b c, of y, of z.
+  Eigen::MatrixXd values;
 };
 
 /// Strain energies of the elements of one card, in ascending order.
@@ -73,8 +100,9 @@ struct ListedStep : ListedHeading {
   double eigenvalue = 0, cycles = 0;
   double at = 0;  ///< Hz or time
   std::vector<ListedVector> vectors;
-  std::vector<ListedElements> forces, stresses;
+  std::vector<ListedElements> forces, stresses, strains;
   std::vector<ListedEnergies> energies;
+  std::vector<ListedGridStresses> grid_stresses;
   std::vector<ListedGridForce> grid_forces;  ///< by grid in ascending order
 };
 

@@ -36,6 +36,7 @@ struct BodyRecord {
   Vector3d cg = Vector3d::Zero();       ///< in B
   Matrix3d inertia = Matrix3d::Zero();  ///< about the centre of mass (rigid bodies), in B
   std::vector<RigidNode> nodes;
+  std::vector<Vector3d> hull;  ///< corners of the convex hull that shades others, from Bo in B; empty: the rigid nodes
   bool stiffening = true;
   std::vector<double> eta, eta_dot;    ///< initial; empty = zero
   std::vector<double> damping_ratios;  ///< overrides the file's modal damping when not empty (one = uniform)

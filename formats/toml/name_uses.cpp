@@ -19,8 +19,8 @@ const std::map<std::string, Keys>& get_name_keys() {
   static const std::map<std::string, Keys> keys{
       {"body",
        {"hinge/parent", "hinge/child", "constraint/parent", "constraint/child", "force/body", "force/to_body",
-        "force/bodies", "sensor/body", "sensor/frame", "sensor/relative_to", "sensor/to_body", "sensor/terms/body",
-        "orbit/body", "event/body", "actuator/body", "tank/body"}},
+        "force/bodies", "force/shaded_by", "sensor/body", "sensor/frame", "sensor/relative_to", "sensor/to_body",
+        "sensor/terms/body", "orbit/body", "event/body", "actuator/body", "tank/body"}},
       {"tank", {"actuator/tank"}},
       {"orbit", {"hinge/parent", "constraint/parent", "sensor/frame", "sensor/relative_to"}},
       {"hinge", {"constraint/terms/hinge", "sensor/hinge", "actuator/hinge", "event/hinge"}},

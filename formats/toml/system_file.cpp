@@ -46,6 +46,7 @@ records::BodyRecord read_body(const Fields& table, const std::string& path, Diag
                         "renumber one of them");
     }
   }
+  body.hull = table.get_vectors("hull");
   body.stiffening = table.get_bool("stiffening", true);
   body.eta = table.get_numbers("eta");
   body.eta_dot = table.get_numbers("eta_dot");

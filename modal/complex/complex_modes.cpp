@@ -496,6 +496,7 @@ struct Selections {
 std::optional<response::FrequencyTables> choose_tables(const fe::Model& model, const records::DynamicDeck& deck,
                                                        const std::optional<rotors::RotorCase>& rotor_case, double g,
                                                        Diagnostics& diagnostics) {
+  if (rotor_case) response::report_part_tables(deck, diagnostics);
   response::FrequencyTables tables(model, deck, g, diagnostics);
   if (tables.is_empty()) return std::nullopt;
   const auto at = deck.locate(deck.dynamics.frequency_tables.front().at);
@@ -544,6 +545,10 @@ Selections read_selections(const fe::Model& model, const records::DynamicDeck& d
     diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
                         "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
                         "damp by PARAM,G, GE or dampers, or solve by modes (SOL 110)");
+  if (!is_by_modes && d.modsel != 0)
+    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("MODSEL")),
+                        "MODSEL selects real modes: the direct solution has none and leaves it out",
+                        "solve by modes (SOL 110), or take it out");
   return found;
 }
 

@@ -240,6 +240,7 @@ AddedStiffness join_terms(const std::shared_ptr<const RotorResponse>& rotors,
 /// Tables of PELAST, PDAMPT and PBUSHT; nullptr without, and over time, where the values of the properties count.
 std::shared_ptr<const FrequencyTables> make_tables(const fe::Model& model, const records::DynamicDeck& deck,
                                                    const ResponseOptions& options, double g, Diagnostics& diagnostics) {
+  if (!options.is_over_time) report_part_tables(deck, diagnostics);
   auto tables = std::make_shared<FrequencyTables>(model, deck, g, diagnostics);
   diagnostics.throw_if_errors();
   if (tables->is_empty()) return nullptr;
@@ -276,6 +277,10 @@ void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcas
     diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
                         "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
                         "damp by PARAM,G, GE or dampers, or solve by modes (--modal)");
+  if (subcase.dynamics.modsel != 0)
+    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("MODSEL")),
+                        "MODSEL selects modes: the direct solution has none and leaves it out",
+                        "solve by modes (--modal), or take it out");
   if (is_over_time) return;
   const int set = subcase.dynamics.frequency;
   for (const auto& list : deck.dynamics.frequencies)

@@ -35,6 +35,22 @@ auto find_record(const Records& records, int id) {
   return std::find_if(records.begin(), records.end(), [id](const auto& r) { return r.id == id; });
 }
 
+/// Reports cards of which the deck has no property.
+void report_without_property(const records::Deck& deck, const std::vector<records::FrequencyTables>& all,
+                             Diagnostics& diagnostics) {
+  for (const auto& tables : all) {
+    const bool is_found = tables.property == "PELAS"   ? find_record(deck.pelas, tables.pid) != deck.pelas.end()
+                          : tables.property == "PDAMP" ? find_record(deck.pdamp, tables.pid) != deck.pdamp.end()
+                                                       : find_record(deck.pbush, tables.pid) != deck.pbush.end();
+    if (is_found) continue;
+    const auto id = " " + std::to_string(tables.pid);
+    diagnostics.error(
+        "modal.table-without-property", deck.locate(tables.at),
+        tables.property + "T" + id + " gives tables for " + tables.property + id + ", which the deck does not define",
+        "add the " + tables.property + " card, or correct the id");
+  }
+}
+
 Values find_values(const records::Deck& deck, const records::FrequencyTables& tables) {
   Values v;
   if (tables.property == "PELAS") {
@@ -53,11 +69,22 @@ double look_up(const records::DynamicTable* table, double value, double x) {
 
 }  // namespace
 
+void report_part_tables(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
+  for (const auto& section : deck.super.sections)
+    for (const char* card : {"PELAST", "PDAMPT", "PBUSHT"})
+      if (section.deck->card_counts.count(card) > 0)
+        diagnostics.error("modal.part-tables", deck.locate(section.at),
+                          std::string(card) + " of superelement " + std::to_string(section.id) +
+                              " cannot act: the section is condensed once, with the values of the properties",
+                          "move the elements with tables and their properties into the main bulk data");
+}
+
 FrequencyTables::FrequencyTables(const fe::Model& model, const records::DynamicDeck& deck, double g,
                                  Diagnostics& diagnostics)
     : g_(g), directions_(model.num_gdofs(), 0) {
   const auto& all = deck.dynamics.frequency_tables;
   if (all.empty()) return;
+  report_without_property(deck, all, diagnostics);
   const auto properties = list_properties(deck);
   std::vector<Eigen::Triplet<double>> terms;
   const auto find = [&](const records::FrequencyTables& card, int id) -> const records::DynamicTable* {

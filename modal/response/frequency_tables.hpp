@@ -9,6 +9,10 @@
 
 namespace bough::modal::response {
 
+/// Reports PELAST, PDAMPT and PBUSHT in sections with elements, which are condensed with the values of the properties
+/// (modal.part-tables).
+void report_part_tables(const records::DynamicDeck& deck, Diagnostics& diagnostics);
+
 /// Differences between the tables and the values of the properties, of which the model is made:
 ///   Z(f) = (1 + i g) (K(f) - K) + i (K_GE(f) - K_GE) + i ω (B(f) - B), ω = 2 π f.
 class FrequencyTables {

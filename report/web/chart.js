@@ -34,6 +34,16 @@ export const set_printing = (is_on) => (is_printing = is_on);
 const kPaperWidth = 680;  // CSS pixels that a sheet has room for
 const kMargin = { left: 76, right: 14, top: 10, bottom: 42 };
 
+const kMaxMarkRows = 3, kMarkRow = 13, kMaxMarkWidth = 220;  // labels above the frame, CSS pixels
+
+// The text, or what of it is not wider than `width`, with an ellipsis; g has the font.
+export function fit_text(g, text, width) {
+  if (g.measureText(text).width <= width) return text;
+  let count = text.length;
+  while (count > 0 && g.measureText(text.slice(0, count) + "…").width > width) --count;
+  return text.slice(0, count).trimEnd() + "…";
+}
+
 // The mark of a point, in the picture and in its legend.
 function stroke_mark(g, kind, x, y, size) {
   g.beginPath();
@@ -196,6 +206,9 @@ export class Chart {
     const g = this.canvas.getContext("2d");
     g.setTransform(scale, 0, 0, scale, 0, 0);
     g.clearRect(0, 0, width, this.height);
+    const labels = this.place_mark_labels(g), room = labels.length > 0 ? kMarkRow * (1 + Math.max(...labels.map(([, , row]) => row))) : 0;
+    frame.top += room;
+    frame.height -= room;
     this.draw_axes(g);
     g.save();
     g.beginPath();
@@ -204,8 +217,8 @@ export class Chart {
     this.draw_marks(g);
     this.draw_guides(g);
     for (const s of this.get_visible()) s.points ? this.draw_points(g, s) : this.draw_curve(g, s);
-    this.write_marks(g);
     g.restore();
+    this.write_marks(g, labels);
     this.draw_legend_strokes();
   }
 
@@ -262,9 +275,11 @@ export class Chart {
     g.textAlign = "center";
     g.fillText(write_powers(this.x_label ?? ""), f.left + f.width / 2, f.top + f.height + 35);
     g.save();
-    g.translate(13, f.top + f.height / 2);
+    // The whole height of the picture is its room, and its middle that of the frame if it can be.
+    const label = write_powers(this.y_label ?? ""), half = Math.min(this.height - 8, g.measureText(label).width) / 2 + 4;
+    g.translate(13, Math.min(Math.max(f.top + f.height / 2, half), this.height - half));
     g.rotate(-Math.PI / 2);
-    g.fillText(write_powers(this.y_label ?? ""), 0, 0, f.height + 40);
+    g.fillText(label, 0, 0, this.height - 8);
     g.restore();
   }
 
@@ -287,27 +302,41 @@ export class Chart {
     return this.marks.map(({ x, label }) => ({ x: this.map_x(this.to_x(x)), label })).filter(({ x }) => x >= left && x <= left + width);
   }
 
-  // Labels of the marks over the curves, each with a rim in the colour of the ground.
-  write_marks(g) {
+  /**
+   * Places the labels of the marks in rows above the frame, where they hide no curve: [text, x, row]. A text without
+   * room is shortened, and left out below six letters.
+   * @param {CanvasRenderingContext2D} g  @returns {[string, number, number][]}
+   */
+  place_mark_labels(g) {
+    g.font = "11px " + get_css("--font");
+    const free = new Array(kMaxMarkRows).fill(this.frame.left), end = this.frame.left + this.frame.width, placed = [];
+    const marks = this.find_marks();
+    for (const [k, { x, label }] of marks.entries()) {
+      const next = marks.slice(k + 1).find((m) => m.x > x)?.x ?? end;
+      const whole = fit_text(g, label, Math.max(kMaxMarkWidth, next - x - 9)), size = g.measureText(whole).width;
+      const take = (text, at, row) => {
+        placed.push([text, at, row]);
+        free[row] = at + g.measureText(text).width + 6;
+      };
+      const row = free.findIndex((from) => x >= from && x + 3 + size <= end);
+      if (row >= 0) take(whole, x + 3, row);
+      else {
+        // Near the right end it stands before its line.
+        const before = free.findIndex((from) => x - 3 - size >= from && x + 3 + size > end);
+        const short = free.findIndex((from) => x >= from), text = short >= 0 ? fit_text(g, label, end - x - 3) : "";
+        if (before >= 0) take(whole, x - 3 - size, before);
+        else if (text.length > 6) take(text, x + 3, short);
+      }
+    }
+    return placed;
+  }
+
+  write_marks(g, labels) {
     g.save();
-    g.strokeStyle = get_css("--panel");
-    g.lineWidth = 3;
-    g.lineJoin = "round";
     g.fillStyle = get_css("--mark");
     g.font = "11px " + get_css("--font");
     g.textAlign = "left";
-    const free = new Array(3).fill(-Infinity);  // where each row of labels has room again
-    for (const { x, label: whole } of this.find_marks()) {
-      const label = whole.length > 32 ? whole.slice(0, 31) + "…" : whole;
-      const size = g.measureText(label).width, row = free.findIndex((end) => x >= end);
-      if (row < 0) continue;
-      // Near the right end it stands before its line.
-      const is_before = x + 3 + size > this.frame.left + this.frame.width && x - 3 - size >= Math.max(this.frame.left, free[row]);
-      const at = [is_before ? x - 3 - size : x + 3, this.frame.top + 11 + 13 * row];
-      g.strokeText(label, ...at);
-      g.fillText(label, ...at);
-      free[row] = x + (is_before ? 3 : 6 + size);
-    }
+    for (const [text, x, row] of labels) g.fillText(text, x, this.frame.top - 4 - kMarkRow * row);
     g.restore();
   }
 

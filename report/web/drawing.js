@@ -1,6 +1,8 @@
 import { format_number } from "./numbers.js";
 import { unpack_column, unpack_floats, unpack_indices, unpack_shorts } from "./unpack.js";
 
+export const kBarNote = " Bars are drawn as lines: a body file has no sections; the studio's view of the deck has them.";
+
 const kMaxSorted = 1e6;  // indices of faces whose edges are looked through for bars
 
 // A body as report/drawing.hpp writes it, and its points when its modes move.
@@ -37,6 +39,11 @@ export class Drawing {
       this.attachments = new Set([...this.ids.keys()].filter((k) => this.interface.has(this.ids[k]) || (this.ids[k] > 0 && !drawn.has(k))));
     }
     return this.attachments;
+  }
+
+  /** Returns true if elements are drawn as lines between nodes: the file of a body has no sections. */
+  has_bars() {
+    return this.ids.length > 0 && this.find_lines().length > 0;
   }
 
   /** Edges that bound no face, as bars: they have the colour of the body. @returns {Uint32Array} */

@@ -2,7 +2,7 @@ import { Chart, Link } from "./chart.js";
 import { el, make_button, make_check, make_file_name, make_select } from "./page_parts.js";
 import { find_index, format_number, label_frequency, write_powers } from "./numbers.js";
 import { calc_spectrum } from "./spectrum.js";
-import { thin_time, unpack_column, unpack_time } from "./unpack.js";
+import { thin_time, unpack_ascending, unpack_column, unpack_time } from "./unpack.js";
 
 export const with_unit = (what, unit) => (unit && unit !== "1" ? `${what} [${unit}]`.trimStart() : what);
 export const label_time = (run) => with_unit("time", run.data.time_unit);
@@ -29,6 +29,7 @@ export class Run {
       if (/\/reaction_(force|moment)$/.test(channel.path) && channel.columns.length === 3) channel.columns.forEach((column, i) => (column.label = "xyz"[i]));
     }
   }
+  // Times and values of what is drawn from one of `stride` samples, all columns at the same times (the motion).
   get_time(channel) {
     if (!this.times.has(channel.stride)) this.times.set(channel.stride, thin_time(this.time, channel.stride));
     return this.times.get(channel.stride);
@@ -38,8 +39,17 @@ export class Run {
     if (!this.columns.has(key)) this.columns.set(key, unpack_column(channel.columns[index], this.get_time(channel).length));
     return this.columns.get(key);
   }
+  // Of a long run the page has the smallest and the largest of each few samples of a column, where they are; `of_all`:
+  // means of all samples, and how many there are.
   make_series(channel, index, name) {
-    return { name, x: this.get_time(channel), y: this.get_values(channel, index) };
+    const { extremes } = channel.columns[index];
+    if (!extremes) return { name, x: this.get_time(channel), y: this.get_values(channel, index) };
+    const key = channel.path + ":" + index + ":extremes";
+    if (!this.columns.has(key)) {
+      const at = unpack_ascending(extremes.at, extremes.digits);
+      this.columns.set(key, { x: Float64Array.from(at, (i) => this.time[i]), y: unpack_column(extremes, at.length) });
+    }
+    return { name, ...this.columns.get(key), of_all: extremes, every: 2 * channel.stride };
   }
   list_series(channel, index, name) {
     return [this.make_series(channel, index, name)];
@@ -191,7 +201,7 @@ export class HistoryView {
       const chart = new Chart({ title, series, marks: this.run.marks, link: this.run.link, y_log: this.is_log, x_label: label_time(this.run), y_label: make_label(this.is_log ? (w) => `|${w}|` : (w) => w) });
       this.charts.push(chart);
       if (this.is_spectrum)
-        this.spectra.push(new Chart({ title: "spectrum of " + (title || with_unit("channels", unit)), link: this.spectrum_link, series: [], x_label: label_frequency(this.run.data.time_unit), y_label: make_label((w) => "amplitude of " + w), y_log: this.is_log, height: 220 }));
+        this.spectra.push(series.some((s) => s.of_all) ? make_spectrum_note(title || "channels", members, Math.max(...series.map((s) => s.every ?? 1))) : new Chart({ title: "spectrum of " + (title || with_unit("channels", unit)), link: this.spectrum_link, series: [], x_label: label_frequency(this.run.data.time_unit), y_label: make_label((w) => "amplitude of " + w), y_log: this.is_log, height: 220 }));
     }
     this.charts_host.replaceChildren(...this.charts.flatMap((c, k) => (this.spectra[k] ? [c.element, this.spectra[k].element] : [c.element])));
     if (this.charts.length === 0) this.charts_host.append(el("p", { class: "note" }, "Choose channels on the left."));
@@ -205,15 +215,17 @@ export class HistoryView {
 
   update_window() {
     this.charts.forEach((chart, k) => {
-      this.spectra[k]?.set_series(chart.series.map((s) => {
+      this.spectra[k]?.set_series?.(chart.series.map((s) => {
         const { frequency, amplitude } = calc_spectrum(s.x, s.y, ...this.find_window(s.x));
         return { name: s.name, style: s.style, x: frequency, y: amplitude };
       }));
     });
     const window = this.run.link.window;
     const head = el("tr", {}, ...["channel", "unit", "min", "max", "max − min", "mean", "rms", "samples"].map((t, i) => el("th", i > 1 ? {} : { class: "text" }, t)));
-    const rows = [...this.chosen.values()].flatMap(([channel, i]) => this.run.list_series(channel, i, name_column(channel, i)).map(({ x, y, name }) => {
+    let is_thinned = false;
+    const rows = [...this.chosen.values()].flatMap(([channel, i]) => this.run.list_series(channel, i, name_column(channel, i)).map(({ x, y, name, of_all }) => {
       const [from, to] = this.find_window(x);
+      is_thinned ||= Boolean(of_all);
       let low = Infinity, high = -Infinity, sum = 0, square = 0, count = 0;
       for (let k = from; k < to; ++k) {
         const v = y[k];
@@ -224,12 +236,16 @@ export class HistoryView {
         square += v * v;
         ++count;
       }
-      const cells = [low, high, high - low, sum / count, Math.sqrt(square / count)].map((v) => el("td", {}, format_number(v)));
+      // The means of a part of the time need the samples that the page does not have.
+      const means = !of_all ? [sum / count, Math.sqrt(square / count)] : window ? [NaN, NaN] : [of_all.mean ?? NaN, of_all.rms ?? NaN];
+      const cells = [low, high, high - low, ...means].map((v) => el("td", {}, format_number(v)));
+      if (of_all && !window) count = of_all.count;
       const own = this.run.runs && channel.columns.length === 1 ? `${name} ${name_column(channel, i)}` : name;
       return el("tr", {}, el("td", { class: "text" }, own), el("td", { class: "text" }, write_powers(channel.columns[i].unit)), ...cells, el("td", {}, String(count)));
     }));
     const range = window ? `${format_number(window[0])} to ${format_number(window[1])}` : "the whole time";
-    this.statistics.replaceChildren(el("caption", {}, "In the window: " + range), el("thead", {}, head), el("tbody", {}, ...rows));
+    const note = !is_thinned ? "" : window ? "; mean and rms need samples that the page does not have" : ", from all samples";
+    this.statistics.replaceChildren(el("caption", {}, "In the window: " + range + note), el("thead", {}, head), el("tbody", {}, ...rows));
   }
 
   // One table; of several runs one below the other, with the run before the time.
@@ -242,14 +258,23 @@ export class HistoryView {
     const lines = [[...(has_many ? ["run"] : []), head("time", this.run.data.time_unit), ...members.map(([c, i]) => head(name_column(c, i), c.columns[i].unit))].join(",")];
     for (const { name, run } of runs) {
       const own = members.map(([c]) => run.by_path.get(c.path));
-      const stride = Math.max(1, ...own.map((c) => c?.stride ?? 1));
-      const time = thin_time(run.time, stride);
+      const columns = own.map((c, m) => (c ? run.make_series(c, members[m][1], "") : { x: [], y: [] }));
+      // Of a long run each column has times of its own: a cell is empty where the page has no sample.
+      const is_thinned = columns.some((c) => c.of_all);
+      const time = is_thinned ? Float64Array.from(new Set(columns.flatMap((c) => [...c.x]))).sort() : run.time;
+      const found = columns.map((c) => (is_thinned ? new Map(Array.from(c.x, (t, k) => [t, c.y[k]])) : null));
       const [from, to] = this.find_window(time);
       for (let k = from; k < to; ++k)
-        lines.push([...(has_many ? [quote(name)] : []), time[k], ...members.map(([, i], m) => (own[m] ? run.get_values(own[m], i)[Math.round((k * stride) / own[m].stride)] : ""))].join(","));
+        lines.push([...(has_many ? [quote(name)] : []), time[k], ...columns.map((c, m) => (!own[m] ? "" : is_thinned ? found[m].get(time[k]) ?? "" : c.y[k]))].join(","));
     }
     save_text(lines.join("\n") + "\n", make_file_name([...new Set(members.map(([c]) => short_name(c.path)))].slice(0, 4).join("-"), "csv"));
   }
+}
+
+// In the place of a spectrum of curves that have lost samples: it would show frequencies that are not there.
+function make_spectrum_note(title, members, every) {
+  const [channel, i] = members[0], what = channel.path.replace(/^\/sensors\//, "") + (channel.columns[i].name ? ":" + channel.columns[i].name : "");
+  return { element: el("p", { class: "note no-spectrum" }, `No spectrum of ${title}: of each ${every} samples the page has the smallest and the largest, and no frequency can be told from these. From all samples: bough plot RESULTS.h5 --sensor ${what} --spectrum; or a page of fewer channels: bough report RESULTS.h5 --channel ${what}.`) };
 }
 
 const quote = (text) => (/[",]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);

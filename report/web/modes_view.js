@@ -1,5 +1,5 @@
-import { Box, Drawing } from "./drawing.js";
-import { format_number } from "./numbers.js";
+import { Box, Drawing, kBarNote } from "./drawing.js";
+import { format_number, write_powers } from "./numbers.js";
 import { el, get_css, make_button, make_check, make_color_bar, make_select, make_slider } from "./page_parts.js";
 import { Viewer, make_triad } from "./viewer.js";
 
@@ -66,7 +66,7 @@ export class ModesView {
     const field = this.fields[this.color_by - this.num_plain], found = this.drawing.get_field(field, mode), { id, property } = this.drawing.elements;
     const level = (v) => (Number.isFinite(v) ? (found.high > found.low ? (v - found.low) / (found.high - found.low) : 0.5) : -1);
     const means = this.is_averaged && field.average ? this.drawing.average(found.values) : null;
-    const number = (v) => format_number(v, 4), name_value = (v) => `${field.name} ${Number.isFinite(v) ? number(v) + (field.unit ? " " + field.unit : "") : "none"}`;
+    const number = (v) => format_number(v, 4), name_value = (v) => `${field.name} ${Number.isFinite(v) ? number(v) + (field.unit ? " " + write_powers(field.unit) : "") : "none"}`;
     this.field = { levels: Float32Array.from(found.values, level), corner_levels: means ? Float32Array.from(means.corners, level) : undefined,
       describe: (element) => `element ${id[element]}${property[element] ? `, property ${property[element]}` : ""}: ${name_value(found.values[element])}` };
     this.bar.update(found.low, found.high, label_unit(field.name, field.unit), number);
@@ -93,7 +93,7 @@ export class ModesView {
     if (this.color_by === 2 && !is_field) this.bar.update(0, this.energy.largest, "strain energy of each element, of the whole", percent);
     if (this.color_by === 3 && !is_field) this.bar.update(0, 1, "strain energy per length, area or volume, of the largest of lines, of surfaces, of solids", percent);
     this.viewer.name = `${label}${is_field ? " " + this.fields[this.color_by - this.num_plain].name : this.color_by > 0 ? " " + kColorings[this.color_by] : ""}`;
-    this.note.textContent = `${about_field}${what} ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. A click names a node${is_field ? " and its element" : ""}. Axes: orange x, green y, blue z.`;
+    this.note.textContent = `${about_field}${what} ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. A click names a node${is_field ? " and its element" : ""}. Axes: orange x, green y, blue z.${this.drawing.has_bars() ? kBarNote : ""}`;
     this.draw();
   }
 

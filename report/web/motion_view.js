@@ -1,5 +1,5 @@
 import { Chart } from "./chart.js";
-import { Box, Drawing, find_extremes } from "./drawing.js";
+import { Box, Drawing, find_extremes, kBarNote } from "./drawing.js";
 import { label_time, with_unit } from "./history.js";
 import { find_index, format_number } from "./numbers.js";
 import { el, get_css, get_style, make_button, make_check, make_color_bar, make_select, make_slider, make_swatch, save_blob } from "./page_parts.js";
@@ -7,6 +7,9 @@ import { SceneMarks, to_rotation, turn } from "./scene_marks.js";
 import { Viewer, make_triad } from "./viewer.js";
 
 const find_channels = (run, name) => Object.fromEntries(["position", "quaternion", "eta"].map((key) => [key, run.by_path.get(`/bodies/${name}/${key}`)]));
+
+const kAxes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+const kFrameSize = 0.1, kBodyFrameSize = 0.06;  // of the scene: length of the axes of the inertial frame, of a body's
 
 // Points of a body in the world, deformed.
 function move_points(body, { p, R, eta }, scale) {
@@ -74,7 +77,7 @@ export class MotionView {
       this.on_pick?.(found);
     };
     this.pin_host = el("div", { class: "pins" });
-    const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there; a click in this view names a node.");
+    const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there; a click in this view names a node." + (moving.some((b) => b.drawing.has_bars()) ? kBarNote : ""));
     this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock, this.pin_button), this.pin_host, this.bar.element, this.color_note, names, this.marks.legend, this.marks.now, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();
@@ -175,8 +178,28 @@ export class MotionView {
       }
     }
     hull.push(...this.marks.extend(box));
+    hull.push(...this.list_tips(box));
     box.hull = hull.every(Number.isFinite) ? hull : [];
     return box;
+  }
+
+  // Ends of arrows and frames, of the sizes that a scene in this box has: they are in the picture too.
+  list_tips(box) {
+    const size = box.get_diagonal(), tips = [];
+    const add_frame = (p, R, length) => [0, 1, 2].forEach((c) => tips.push(...p.map((v, i) => v + length * R[i][c])));
+    const middle = box.get_middle();
+    if (Math.hypot(...middle) < 1.5 * size) add_frame([0, 0, 0], kAxes, kFrameSize * size);
+    const has_arrows = this.marks.sources.length > 0;
+    for (const time of this.list_times(40)) {
+      const places = this.bodies.map((b) => (b.is_drawn ? this.place(b, time) : null));
+      this.bodies.forEach((body, k) => {
+        if (!places[k]) return;
+        add_frame(places[k].p, places[k].R, kBodyFrameSize * size);
+        if (has_arrows) move_points(body, places[k], 1);
+      });
+      if (has_arrows) tips.push(...this.marks.list_tips(places, time, size));
+    }
+    return tips;
   }
 
   // The largest displacement of any point, for the colours.
@@ -291,7 +314,7 @@ export class MotionView {
     if (!this.viewer?.home || !this.clock) return;
     const size = this.viewer.extent, things = [], boxes = [], nodes = [];
     const places = this.get_places();
-    if (this.has_frames) things.push(...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.1 * size));
+    if (this.has_frames) things.push(...make_triad([0, 0, 0], kAxes, kFrameSize * size));
     this.bodies.forEach((body, k) => {
       if (!body.is_drawn) return;
       const { p, R, eta } = places[k], d = body.drawing;
@@ -303,7 +326,7 @@ export class MotionView {
       if (marked && marked.size > 0) nodes.push({ points: Float32Array.from([...marked].flatMap((k) => [...body.world.subarray(3 * k, 3 * k + 3)])), color: get_css("--mark"), dots: true });
       const pick = d.ids.length > 0 ? { body: body.name, ids: d.ids, marked, describe: (k) => d.describe(k, body.name + ", ", `displacement ${format_number(d.size[k] / (this.scale || 1), 4)}`) } : {};
       (is_box ? boxes : things).push({ ...colors, ...pick, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, lines: d.find_lines(), ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
-      if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
+      if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), kBodyFrameSize * size));
     });
     this.viewer.marks = [...nodes, ...this.marks.make_things(places, this.time, size), ...(this.make_overlay?.(places, size) ?? [])];
     if (this.follow >= 0) {

@@ -81,14 +81,8 @@ export class SceneMarks {
   // Of all samples: { value, name, time }.
   find_largest(is_moment) {
     const most = { value: 0, name: "", time: 0 };
-    for (const arrow of this.sources.filter((a) => a.moment === is_moment)) {
-      const time = this.view.run.get_time(arrow.source), columns = (arrow.column < 0 ? [0, 1, 2] : [arrow.column]).map((c) => this.view.run.get_values(arrow.source, c));
-      const unit = arrow.column < 0 || arrow.towards ? 1 : Math.hypot(...arrow.axes.map((row) => row[0]));
-      for (let i = 0; i < time.length; ++i) {
-        const value = unit * Math.hypot(...columns.map((y) => y[i]));
-        if (value > most.value) Object.assign(most, { value, name: arrow.name, time: time[i] });
-      }
-    }
+    for (const { name, largest } of this.sources.filter((a) => a.moment === is_moment))
+      if (largest.value > most.value) Object.assign(most, { ...largest, name });
     return most.value > kNoise ? most : { value: 0, name: "", time: 0 };
   }
 
@@ -135,13 +129,23 @@ export class SceneMarks {
     return taken;
   }
 
+  get_per_unit(size) {
+    return this.largest.map((most) => (most.value > 0 ? (kLongest * size * this.scale) / most.value : 0));
+  }
+
+  // Heads of the arrows, three numbers each.
+  list_tips(places, time, size) {
+    const per_unit = this.get_per_unit(size);
+    return this.find_arrows(places, time).flatMap(({ moment, at, vector }) => at.map((v, i) => v + per_unit[moment ? 1 : 0] * vector[i]));
+  }
+
   make_things(places, time, size) {
     const things = [];
     this.add_hinges(things, places, size);
     if (this.is_on.sensors) this.add_sensors(things, places, size);
     this.arrows = this.find_arrows(places, time).filter((a) => this.is_on[a.reaction ? "reactions" : "applied"]);
     const meshes = { "--applied": { points: [], triangles: [] }, "--reaction": { points: [], triangles: [] } };
-    const per_unit = this.largest.map((most) => (most.value > 0 ? (kLongest * size * this.scale) / most.value : 0));
+    const per_unit = this.get_per_unit(size);
     for (const { moment, reaction, at, vector } of this.arrows)
       add_arrow(meshes[reaction ? "--reaction" : "--applied"], at, vector.map((v) => v * per_unit[moment ? 1 : 0]), moment ? 2 : 1, size);
     for (const [color, mesh] of Object.entries(meshes)) if (mesh.points.length > 0) things.push(to_thing(mesh, get_css(color)));

@@ -29,6 +29,20 @@ export function unpack_time(time) {
   return Float64Array.from({ length: time.count }, (_, i) => time.first + i * time.step);
 }
 
+// Ascending indices: differences of `digits` characters of base 64 each (report/pack.cpp).
+export function unpack_ascending(text, digits) {
+  const kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const value = new Map([...kDigits].map((letter, i) => [letter, i]));
+  const indices = new Uint32Array(text.length / digits);
+  let at = 0;
+  for (let i = 0; i < indices.length; ++i) {
+    let by = 0;
+    for (let k = 0; k < digits; ++k) by = 64 * by + value.get(text[digits * i + k]);
+    indices[i] = at += by;
+  }
+  return indices;
+}
+
 // The samples that a channel of this stride keeps.
 export function thin_time(time, stride) {
   if (stride <= 1) return time;

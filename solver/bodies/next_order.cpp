@@ -15,10 +15,17 @@ namespace {
 
 /// Amplitudes on the stack.
 using Amplitudes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, records::kMaxThirdOrderModes, 1>;
+/// n x N.
+using Shapes =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, records::kMaxThirdOrderModes, records::kMaxLargeModes>;
 /// Error of a cantilever of second order by (|u_2|/|u_1|)²: 1.03 w² and 0.6 w at a way of w lengths.
 constexpr double kCantilever = 3;
 /// Error of a strip that bends about both axes and twists, by the square of what calc_coupling() gives.
 constexpr double kStrip = 2;
+/// Square of the way of a shape of unit strain energy, of that of the softest one, that has part in a mean.
+constexpr double kSoft = 0.05;
+/// Share of the strain energy below which the error of small modes is not estimated: it is less.
+constexpr double kSmallShare = 1e-3;
 
 /// Displacement of the node beyond φη.
 Vector3d calc_higher(const Node& node, const ConstVectorRef& eta) {
@@ -59,9 +66,82 @@ double calc_coupling(const Body& body, const Node& node, const ConstVectorRef& e
   return std::sqrt(std::max(0.0, force.dot(K.solve(force))) / twice_energy);
 }
 
+/// V_3 to V_6 of a body of third order, by the values at ±η and ±½η.
+std::array<double, 4> split_energy(const ThirdOrderBody& third, const ConstVectorRef& eta) {
+  constexpr std::array<double, 4> shares = {1, -1, 0.5, -0.5};
+  std::array<double, 4> V{};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const Amplitudes part = shares[i] * eta;
+    V[i] = third.calc_energy(part);
+  }
+  const double even = 0.5 * (V[0] + V[1]), even_half = 0.5 * (V[2] + V[3]);  // V_4 + V_6, V_4/16 + V_6/64
+  const double odd = 0.5 * (V[0] - V[1]), odd_half = 0.5 * (V[2] - V[3]);    // V_3 + V_5, V_3/8 + V_5/32
+  const double V3 = (32 * odd_half - odd) / 3, V4 = (64 * even_half - even) / 3;
+  return {V3, V4, odd - V3, even - V4};
+}
+
 double calc_root(double ratio, int degree) { return std::pow(ratio, 1.0 / degree); }
 
 }  // namespace
+
+double calc_small_error(const Body& body, const ConstVectorRef& eta) {
+  const MatrixXd& K = body.K();
+  const Eigen::Index n = eta.size();
+  const ThirdOrderBody* third = body.third_order();
+  const SoftEnergy* soft = body.soft_energy();
+  if (!third && !soft) return 0;
+  const auto get_mode = [&](Eigen::Index f) { return soft->modes()[static_cast<std::size_t>(f)]; };
+  const auto is_soft = [&](Eigen::Index j) {
+    return std::binary_search(soft->modes().begin(), soft->modes().end(), static_cast<int>(j));
+  };
+  double twice = 0, small = 0;
+  for (Eigen::Index j = 0; j < n; ++j) twice += K.col(j).dot(eta) * eta[j];
+  if (third) {
+    small = third->calc_twice_small_energy(K, eta);
+  } else {
+    for (Eigen::Index j = 0; j < n; ++j)
+      for (Eigen::Index k = 0; k < n && !is_soft(j); ++k)
+        if (!is_soft(k)) small += eta[j] * K(j, k) * eta[k];
+  }
+  if (!(small > kSmallShare * twice)) return 0;
+  const Eigen::Index N = third ? third->num_large() : static_cast<Eigen::Index>(soft->modes().size());
+  Shapes shapes;  // of order 3; a body of order 2 may have more modes
+  if (third) {
+    shapes.resize(n, N);
+    third->calc_large_shapes(K, shapes);
+  }
+  std::array<double, records::kMaxLargeModes> ratio{}, softness{};
+  for (Eigen::Index f = 0; f < N; ++f) {
+    double own = 0, common = 0;  // squares of the way of the shape, and of the deflection there
+    for (const Node& node : body.nodes()) {
+      if (!node.moves || !node.is_material) continue;
+      Vector3d of_shape = Vector3d::Zero(), all = Vector3d::Zero();
+      for (Eigen::Index j = 0; j < n; ++j) {
+        all += node.phi.col(j) * eta[j];
+        if (third) of_shape += node.phi.col(j) * shapes(j, f);
+      }
+      if (!third) of_shape = node.phi.col(get_mode(f));
+      own = std::max(own, of_shape.squaredNorm());
+      common = std::max(common, of_shape.squaredNorm() * all.squaredNorm());
+    }
+    double stiffness = third ? 0 : K(get_mode(f), get_mode(f));
+    for (Eigen::Index j = 0; third && j < n; ++j) stiffness += shapes(j, f) * K.col(j).head(n).dot(shapes.col(f));
+    const double quartic =
+        third ? split_energy(*third, shapes.col(f))[1] : soft->calc_quartic(static_cast<std::size_t>(f));
+    if (!(own > 0 && stiffness > 0)) continue;
+    softness[static_cast<std::size_t>(f)] = own / stiffness;
+    ratio[static_cast<std::size_t>(f)] = 4 * std::abs(quartic) / stiffness * common / (own * own);
+  }
+  const double softest = *std::max_element(softness.begin(), softness.end());
+  double sum = 0;
+  int number = 0;
+  for (std::size_t f = 0; f < ratio.size(); ++f) {
+    if (!(softness[f] > 0 && softness[f] >= kSoft * softest)) continue;  // rotations of grids alone
+    sum += ratio[f];
+    ++number;
+  }
+  return number > 0 ? small / twice * sum / (number + sum) : 0;
+}
 
 double calc_next_order(const Body& body, const Node& node, const ConstVectorRef& eta, double size) {
   Vector3d u1 = Vector3d::Zero();
@@ -84,13 +164,11 @@ double calc_next_order(const Body& body, const Node& node, const ConstVectorRef&
     return std::max({of_body, kCantilever * square / (first * first), kStrip * coupling * coupling});
   }
   // Degrees apart by their values at ±η and ±½η.
-  const std::array<double, 4> shares = {1, -1, 0.5, -0.5};
+  constexpr std::array<double, 4> shares = {1, -1, 0.5, -0.5};
   std::array<Vector3d, 4> u;
-  std::array<double, 4> V{};
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const Amplitudes part = shares[i] * eta;
     u[i] = node.higher.empty() ? Vector3d(Vector3d::Zero()) : calc_higher(node, part);
-    V[i] = body.third_order()->calc_energy(part);
   }
   const Vector3d even = 0.5 * (u[0] + u[1]), half = 0.5 * (u[2] + u[3]);
   const Vector3d u2 = (16 * half - even) / 3, u3 = 0.5 * (u[0] - u[1]), u4 = even - u2;
@@ -99,10 +177,7 @@ double calc_next_order(const Body& body, const Node& node, const ConstVectorRef&
   ratio = std::max(ratio, calc_root(u3.norm() / first, 2));
   ratio = std::max(ratio, calc_root(u4.norm() / first, 3));
   if (twice > 0) {
-    const double V_even = 0.5 * (V[0] + V[1]), V_half = 0.5 * (V[2] + V[3]);     // V_4 + V_6, V_4/16 + V_6/64
-    const double V_odd = 0.5 * (V[0] - V[1]), V_odd_half = 0.5 * (V[2] - V[3]);  // V_3 + V_5, V_3/8 + V_5/32
-    const double V4 = (64 * V_half - V_even) / 3, V3 = (32 * V_odd_half - V_odd) / 3;
-    const std::array<double, 4> energies = {V3, V4, V_odd - V3, V_even - V4};
+    const std::array<double, 4> energies = split_energy(*body.third_order(), eta);
     for (int k = 3; k <= 6; ++k)
       ratio = std::max(ratio, calc_root(std::abs(energies[static_cast<std::size_t>(k - 3)]) / (0.5 * twice), k - 2));
   }

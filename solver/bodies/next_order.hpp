@@ -14,4 +14,11 @@ namespace bough::solver {
 /// \return 0 for a node at rest. \note No allocation.
 double calc_next_order(const Body& body, const Node& node, const ConstVectorRef& eta, double size);
 
+/// Estimates the error due to the part of a deflection whose V_4 the body lacks: of order 2 the modes outside
+/// SoftEnergy, of order 3 the small ones. Its share of ηᵀKη times x/(1 + x), x the mean of 2 V_4/V_2 of the softest
+/// modes or directions that have V_4, at an amplitude that moves some node as far as the deflection. Example: bodies
+/// that joints hold at several nodes, which bend by residual vectors.
+/// \return 0 if that share is below 1e-3, or without soft modes. \note No allocation.
+double calc_small_error(const Body& body, const ConstVectorRef& eta);
+
 }  // namespace bough::solver

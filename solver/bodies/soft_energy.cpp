@@ -93,4 +93,10 @@ double SoftEnergy::calc_error(const Node& node, const MatrixXd& K_all, const Con
   return 0;
 }
 
+double SoftEnergy::calc_quartic(std::size_t i) const {
+  Amplitudes soft = Amplitudes::Zero(static_cast<Eigen::Index>(modes_.size()));
+  soft[static_cast<Eigen::Index>(i)] = 1;
+  return Derivatives(energy_, soft).quartic.dot(soft) / 4;
+}
+
 }  // namespace bough::solver

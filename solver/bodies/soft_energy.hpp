@@ -14,6 +14,11 @@ class SoftEnergy {
   /// same load has with V_3 and V_4. 0: no such state is found. K: modal stiffness. No allocation.
   double calc_error(const Node& node, const MatrixXd& K, const ConstVectorRef& eta) const;
 
+  /// Modes whose energy is known, ascending.
+  const std::vector<int>& modes() const { return modes_; }
+  /// V_4 [F L] of mode modes()[i] at unit amplitude. No allocation.
+  double calc_quartic(std::size_t i) const;
+
  private:
   std::vector<int> modes_;
   Polynomials energy_;  ///< V_3, V_4

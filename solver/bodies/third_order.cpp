@@ -202,6 +202,19 @@ double ThirdOrderBody::calc_twice_small_energy(const MatrixXd& K, const ConstVec
   return twice;
 }
 
+void ThirdOrderBody::calc_large_shapes(const MatrixXd& K, Eigen::Ref<MatrixXd> shapes) const {
+  if (large_.directions.size() == 0) {
+    shapes.setZero();
+    for (Eigen::Index f = 0; f < large_.size(); ++f) shapes(large_.modes[static_cast<size_t>(f)], f) = 1;
+    return;
+  }
+  // y = L η with L = DᵀK over the stiffness of each direction.
+  constexpr int kMax = records::kMaxThirdOrderModes;
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMax, kMax> modal = K.topLeftCorner(n_, n_);
+  shapes = large_.directions.transpose() * of_directions_.asDiagonal();
+  modal.ldlt().solveInPlace(shapes);
+}
+
 double ThirdOrderBody::calc_energy(const ConstVectorRef& eta) const {
   constexpr int kMax = records::kMaxThirdOrderModes;
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMax * kMax, 1> J(n_);  // on the stack

@@ -38,6 +38,10 @@ class ThirdOrderBody {
   double calc_energy(const ConstVectorRef& eta) const;
   /// ζᵀKζ of the other modes, or of the complement of the directions. K: modal stiffness.
   double calc_twice_small_energy(const MatrixXd& K, const ConstVectorRef& eta) const;
+  /// Number N of large modes or directions.
+  Eigen::Index num_large() const { return large_.size(); }
+  /// Amplitudes of the large modes or directions, n x N: a column each. K: modal stiffness. No allocation.
+  void calc_large_shapes(const MatrixXd& K, Eigen::Ref<MatrixXd> shapes) const;
 
  private:
   int n_ = 0, m_ = 0;

@@ -345,8 +345,47 @@ class ElementBuilder {
     panel.sun_W = r_.sun.normalized();
     panel.is_one_sided = r_.is_one_sided;
     if (const ForceElementRecord* planet = find_planet()) panel.shadow = {planet->centre, planet->equator, r_.sun_size};
+    panel.shading = find_shading(panel.sun_W);
     if (r_.has_faces) return std::make_unique<SunOnFaces>(r_.name, find_faces(), panel);
     return std::make_unique<SolarPressure>(r_.name, add_marker(r_.from, {true, false}), panel);
+  }
+
+  /// Hulls of the bodies that shade the panel or the faces.
+  Shading find_shading(const Vector3d& sun_W) {
+    std::vector<ShadingBody> bodies;
+    for (const std::string& name : r_.shaded_by) {
+      if (name == "ground" || name == r_.from.body) {
+        refuse("is shaded_by " + (name == "ground" ? "ground" : "its own body " + quote(name)),
+               "name other bodies; one_sided is for the faces of a closed hull");
+        continue;
+      }
+      ShadingBody shading;
+      shading.body = find_body(name);
+      if (shading.body < 0) continue;  // reported
+      const auto is_it = [&](const records::BodyRecord& body) { return body.name == name; };
+      const records::BodyRecord& record =
+          *std::find_if(context_.spec.bodies.begin(), context_.spec.bodies.end(), is_it);
+      std::vector<Vector3d> corners = record.hull;
+      if (corners.empty())
+        for (const auto& node : record.nodes) corners.push_back(node.p);
+      shading.corners_B.resize(3, static_cast<Eigen::Index>(corners.size()));
+      for (size_t i = 0; i < corners.size(); ++i) shading.corners_B.col(static_cast<Eigen::Index>(i)) = corners[i];
+      if (corners.size() < 3 || !has_extent(shading.corners_B)) {
+        refuse("is shaded_by body " + quote(name) + ", whose " + (record.hull.empty() ? "nodes have" : "hull has") +
+                   " no area",
+               "give the body a hull: the corners of its outline, as [[x, y, z], ...]");
+        continue;
+      }
+      bodies.push_back(std::move(shading));
+    }
+    return {std::move(bodies), sun_W};
+  }
+
+  /// Returns true if the points are finite, and not all on one line.
+  static bool has_extent(const Eigen::Matrix3Xd& points) {
+    const Eigen::Matrix3Xd r = points.colwise() - points.rowwise().mean();
+    const Vector3d sizes = Eigen::JacobiSVD<Eigen::Matrix3Xd>(r).singularValues().head<3>();
+    return points.allFinite() && sizes[1] > 1e-9 * sizes[0];
   }
 
   const ForceElementRecord& r_;

@@ -51,6 +51,8 @@ class VariantBuilder {
 
   void check_start(const records::BodyRecord& r) {
     if (system_.is_lagged) refuse(r, "has levels, and its stiffening is lagged", "take stiffening = \"consistent\"");
+    if (std::find(r.levels.begin(), r.levels.end(), r.file) == r.levels.end())
+      return refuse(r, "has levels without its file " + quote(r.file), "list the files of all levels");
     const auto& start = flex_.at(r.file);
     for (const auto& file : r.levels) {
       const auto found = flex_.find(file);

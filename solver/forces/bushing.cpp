@@ -27,7 +27,7 @@ std::vector<ForceChannel> BushingElement::channels() const {
 
 ForceResult BushingElement::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
   const MarkerInWorld a = calc_marker_in_world(data, tree, from_), b = calc_marker_in_world(data, tree, to_);
-  const Vector3d d = b.p - a.p;
+  const Vector3d d = b.place - a.place;
   Vector6d x, x_dot;
   x << a.R.transpose() * d, calc_rotation_vector(a.R.transpose() * b.R);
   const Vector3d theta = x.tail<3>();

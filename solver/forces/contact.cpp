@@ -27,7 +27,7 @@ std::array<T, 5> ContactElement::calc_forces(const std::array<T, 5>& at) const {
 
 ForceResult ContactElement::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
   const MarkerInWorld a = calc_marker_in_world(data, tree, from_), b = calc_marker_in_world(data, tree, to_);
-  const Vector3d d = a.p - b.p;
+  const Vector3d d = a.place - b.place;
   Vector3d n;  // from B to A
   double gap, separation;
   if (law_.is_plane) {
@@ -39,8 +39,8 @@ ForceResult ContactElement::calc(const Tree& tree, const TreeData& data, Loads* 
     n = separation > 0 ? Vector3d(d / separation) : Vector3d::UnitZ();
     gap = separation - law_.radius - law_.to_radius;
   }
-  const Vector3d at = a.p - (law_.radius + gap) * n;  // on the surface of B
-  const Vector3d v = a.v + a.w.cross(at - a.p) - b.v - b.w.cross(at - b.p);
+  const Vector3d from_a = -(law_.radius + gap) * n;  // to the surface of B
+  const Vector3d v = a.v + a.w.cross(from_a) - b.v - b.w.cross(d + from_a);
   const double rate = n.dot(v);
   ForceResult result;
   result.values = {gap, rate};
@@ -50,13 +50,13 @@ ForceResult ContactElement::calc(const Tree& tree, const TreeData& data, Loads* 
   const Vector3d slip = v - rate * n;
   const auto forces =
       evaluate_law<5, 5>(data.tangents, {this, "force", name()}, 0, {separation, rate, slip.x(), slip.y(), slip.z()},
-                         [this](const auto& x) { return calc_forces(x); }, {a.p.norm() + b.p.norm(), 0, 0, 0, 0});
+                         [this](const auto& x) { return calc_forces(x); }, {calc_reach(a.place, b.place), 0, 0, 0, 0});
   const double elastic = forces[0], normal = forces[1];
   const Vector3d friction(forces[2], forces[3], forces[4]);
   if (loads != nullptr) {
     const Vector3d f = normal * n + friction;
-    loads->add_wrench(from_, f, (at - a.p).cross(f));
-    loads->add_wrench(to_, -f, (b.p - at).cross(f));
+    loads->add_wrench(from_, f, from_a.cross(f));
+    loads->add_wrench(to_, -f, f.cross(d + from_a));
   }
   result.strain = elastic * depth / (law_.exponent + 1);
   result.power = elastic * rate;

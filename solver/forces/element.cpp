@@ -7,7 +7,8 @@ namespace bough::solver {
 MarkerInWorld calc_marker_in_world(const TreeData& data, const Tree& tree, int marker) {
   const MarkerMotion& m = data.markers[static_cast<size_t>(marker)];
   const BodyState& s = data[tree.markers[static_cast<size_t>(marker)].body].state;
-  return {s.p_WBo + s.R_WB * m.r, s.R_WB * (s.v_B + s.w_B.cross(m.r) + m.v), s.R_WB * (s.w_B + m.w), s.R_WB * m.R};
+  const Place place = s.calc_place(m.r);
+  return {place.p_W, s.R_WB * (s.v_B + s.w_B.cross(m.r) + m.v), s.R_WB * (s.w_B + m.w), s.R_WB * m.R, place};
 }
 
 void Loads::add_wrench(int marker, const Vector3d& f_W, const Vector3d& t_W) {

@@ -31,6 +31,7 @@ struct ForceChannel {
 struct MarkerInWorld {
   Vector3d p, v, w;
   Matrix3d R;
+  Place place;  ///< of p
 };
 /// Motion of a marker, its node deformed, after calc_velocity. R_WM; v and w in W.
 MarkerInWorld calc_marker_in_world(const TreeData& data, const Tree& tree, int marker);

@@ -35,6 +35,8 @@ FaceMotion FaceElement::calc_face(const Tree& tree, const TreeData& data, const 
   motion.p = s.p_WBo + s.R_WB * middle;
   motion.v = s.R_WB * (s.v_B + s.w_B.cross(middle) + rate);
   motion.area = 0.5 * (s.R_WB * area);
+  motion.count = face.count;
+  for (int i = 0; i < face.count; ++i) motion.corners.col(i) = s.p_WBo + s.R_WB * r[static_cast<size_t>(i)];
   return motion;
 }
 
@@ -86,10 +88,14 @@ ForceResult SunOnFaces::calc(const Tree& tree, const TreeData& data, Loads* load
   ForceResult result = calc_sum(tree, data, loads, [&](const FaceMotion& face, double& seen) -> Vector3d {
     const double area = face.area.norm();
     if (area == 0) return Vector3d::Zero();
-    const Vector3d f = calc_panel_force(panel_, face.area / area, area * light);
-    const double lit = face.area.dot(panel_.sun_W);
-    seen += panel_.is_one_sided ? std::max(0.0, lit) : std::abs(lit);
-    return f;
+    const double facing = face.area.dot(panel_.sun_W);
+    const double projected = panel_.is_one_sided ? std::max(0.0, facing) : std::abs(facing);
+    if (projected == 0) return Vector3d::Zero();
+    double share = 1;
+    if (!panel_.shading.is_empty())
+      share = panel_.shading.calc_lit_share(data, face.corners.leftCols(face.count), face.area);
+    seen += share * projected;
+    return calc_panel_force(panel_, face.area / area, area * light * share);
   });
   result.values[4] = light;
   return result;

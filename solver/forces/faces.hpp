@@ -3,7 +3,7 @@
 ///
 /// A face is the triangle or quadrilateral of its corners at p + φ η, first order in η: its vector area is half the
 /// cross product of two edges or of the diagonals, its force acts in equal shares on its corners. No face shades
-/// another.
+/// another; bodies that are named do (shading.hpp).
 #include "solver/forces/drag.hpp"
 #include "solver/forces/sunlight.hpp"
 
@@ -25,6 +25,8 @@ struct MeshFaces {
 struct FaceMotion {
   Vector3d p = Vector3d::Zero(), v = Vector3d::Zero();  ///< of its centroid
   Vector3d area = Vector3d::Zero();                     ///< L²; along its normal
+  Eigen::Matrix<double, 3, 4> corners;                  ///< the first `count` columns
+  int count = 0;
 };
 
 class FaceElement : public ForceElement {

@@ -41,7 +41,7 @@ std::array<T, 2> SpringElement::calc_tension(const std::array<T, 2>& at, double&
 
 ForceResult SpringElement::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
   const MarkerInWorld a = calc_marker_in_world(data, tree, from_), b = calc_marker_in_world(data, tree, to_);
-  const Vector3d d = b.p - a.p;
+  const Vector3d d = b.place - a.place;
   double length = d.norm();
   if (!std::isfinite(length)) length = d.stableNorm();  // the squares of far ends have no number
   const Vector3d along = length > 0 ? Vector3d(d / length) : Vector3d::Zero();
@@ -49,7 +49,7 @@ ForceResult SpringElement::calc(const Tree& tree, const TreeData& data, Loads* l
   double stored = 0;
   const auto [elastic, damper] =
       evaluate_law<2, 2>(data.tangents, {this, "force", name()}, 0, {length, rate},
-                         [&](const auto& at) { return calc_tension(at, stored); }, {a.p.norm() + b.p.norm(), 0});
+                         [&](const auto& at) { return calc_tension(at, stored); }, {calc_reach(a.place, b.place), 0});
   const double driven = law_.function ? data.functions[*law_.function].calc(data.t).f : 0;
   const double tension = elastic + damper + driven;
   if (loads != nullptr) {

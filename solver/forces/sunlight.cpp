@@ -59,8 +59,10 @@ Vector3d calc_panel_force(const SolarPressure::Panel& panel, Vector3d n, double 
 ForceResult SolarPressure::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
   const MarkerInWorld k = calc_marker_in_world(data, tree, marker_);
   demand_outside(panel_.shadow, k.p, name(), data.t);
-  const double light = calc_sunlight(panel_.shadow, k.p, panel_.sun_W);
-  const Vector3d f = calc_panel_force(panel_, k.R * panel_.normal, light * panel_.area);
+  const Vector3d n_W = k.R * panel_.normal;
+  double light = calc_sunlight(panel_.shadow, k.p, panel_.sun_W);
+  if (!panel_.shading.is_empty()) light *= panel_.shading.calc_lit_share_of_disc(data, k.p, n_W, panel_.area);
+  const Vector3d f = calc_panel_force(panel_, n_W, light * panel_.area);
   if (loads != nullptr) loads->add_wrench(marker_, f, Vector3d::Zero());
   ForceResult result;
   for (int i = 0; i < 3; ++i) result.values[static_cast<size_t>(i)] = f[i];

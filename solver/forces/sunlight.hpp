@@ -4,8 +4,9 @@
 ///     F = -P ν A cos θ [(1 - ρ_s) s + 2 (ρ_s cos θ + ρ_d/3) n],   cos θ = n·s > 0
 /// s: direction to the sun; n: normal of the lit side; ρ_s, ρ_d: specular and diffuse reflectivity; ν: visible share of
 /// the sun's disc. Source: Wertz, Spacecraft Attitude Determination and Control (1978), 17.2; Montenbruck & Gill,
-/// Satellite Orbits (2000), 3.4. No body but the planet casts a shadow.
+/// Satellite Orbits (2000), 3.4. Bodies named by the panel shade it too (shading.hpp).
 #include "solver/forces/element.hpp"
+#include "solver/forces/shading.hpp"
 
 namespace bough::solver {
 
@@ -29,6 +30,7 @@ class SolarPressure final : public ForceElement {
     Vector3d normal = Vector3d::UnitZ(), sun_W = Vector3d::UnitX();
     bool is_one_sided = false;
     Shadow shadow;
+    Shading shading;  ///< by bodies, on a disc of the area, or on the faces
   };
   /// \param marker  centre of the panel, where the force acts.
   SolarPressure(std::string name, int marker, const Panel& panel)
@@ -39,7 +41,7 @@ class SolarPressure final : public ForceElement {
   void calc_kinks(const Tree& tree, const TreeData& data, double* g) const override;
   std::vector<ForceChannel> channels() const override {
     return {{"force", 3, "pressure of sunlight, in the inertial frame", "F"},
-            {"sunlight", 1, "visible share of the sun", "1"}};
+            {"sunlight", 1, "visible share of the sun, mean over the panel", "1"}};
   }
 
  private:

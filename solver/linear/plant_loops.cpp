@@ -26,9 +26,13 @@ void Plant::choose_independent(double t, const VectorXd& q) {
   calc_position(system_.tree, t, q, data_->tree);
   calc_closure_positions(system_.loops, system_.tree, data_->tree, data_->loops);
   const MatrixXd G = calc_dense_rows(system_.loops, system_.tree, data_->tree, data_->loops);
+  const VectorXd sizes = calc_row_sizes(system_.loops, data_->loops);
   MatrixXd own(G.rows(), num_dofs());
   for (int j = 0; j < num_dofs(); ++j)
     own.col(j) = G.col(rows_[static_cast<size_t>(j)]) * step(j) * (is_mode(j) ? kModeWeight : 1);
+  // A row of a rotation and one of a displacement count alike in any unit of length.
+  for (Eigen::Index i = 0; i < own.rows(); ++i)
+    if (sizes[i] > 0) own.row(i) /= sizes[i];
   grip_.assign(static_cast<size_t>(system_.num_u()), AssemblyPriority::Fixed);
   if (own.cols() == 0) return;
   Eigen::ColPivHouseholderQR<MatrixXd> factor;

@@ -95,7 +95,9 @@ void Plant::add_outputs() {
 }
 
 Difference Plant::differentiate(const std::function<VectorXd(double)>& f, double step, std::vector<LawKink>* kinks) {
-  return differentiate_system(*data_, *tangents_, f, step, lies_far(system_.tree, data_->tree), kinks);
+  // Dependent positions are those of the last iteration of the assembly. Stiff bodies turn its round-off into
+  // accelerations that a short step would take for a slope.
+  return differentiate_system(*data_, *tangents_, f, step, has_loops() || lies_far(system_.tree, data_->tree), kinks);
 }
 
 VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {

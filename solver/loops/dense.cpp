@@ -1,10 +1,69 @@
-// G by unit speeds: no response, no multiplier.
+// G row by row: generalized forces of a unit wrench at the ends of a constraint, no response, no multiplier.
 #include <algorithm>
 #include <optional>
 
 #include "solver/loops/loops.hpp"
 
 namespace bough::solver {
+
+namespace {
+
+/// Transpose of run_rates along the bodies between two markers and the ground.
+class ForceSweep {
+ public:
+  ForceSweep(const Tree& tree, const TreeData& data)
+      : tree_(tree), data_(data), forces_(Matrix6Xd::Zero(6, tree.size())) {}
+
+  /// Adds to `row` (num_u) the generalized forces of a wrench at each marker, in the basis of its body.
+  void add(int marker_a, const Vector6d& on_a, int marker_b, const Vector6d& on_b, Eigen::Ref<VectorXd> row) {
+    int a = load(marker_a, on_a, row), b = load(marker_b, on_b, row);
+    while (a >= 0 || b >= 0) {  // a parent is before its children
+      const int body = std::max(a, b);
+      carry(body, row);
+      if (a == body) a = tree_[body].parent;
+      if (b == body) b = tree_[body].parent;
+    }
+  }
+
+ private:
+  int load(int marker, const Vector6d& wrench, Eigen::Ref<VectorXd> row) {
+    const int body = tree_.markers[static_cast<size_t>(marker)].body;
+    if (body < 0) return body;
+    const MarkerMotion& motion = data_.markers[static_cast<size_t>(marker)];
+    const Vector3d f = wrench.head<3>();
+    forces_.col(body).head<3>() += f;
+    forces_.col(body).tail<3>() += motion.r.cross(f) + wrench.tail<3>();
+    row.segment(tree_[body].eta_dot_offset(), motion.J.cols()).noalias() += motion.J.transpose() * wrench;
+    return body;
+  }
+
+  void carry(int body, Eigen::Ref<VectorXd> row) {
+    const TreeBody& tb = tree_[body];
+    const BodyData& d = data_[body];
+    const Vector6d F = forces_.col(body);
+    forces_.col(body).setZero();
+    for (int i = 0; i < d.num_free; ++i) row[tb.u_offset + d.free[i]] += d.H.col(i).dot(F);
+    const int n = tb.num_modes();
+    if (n > 0 && tb.on_child.moves) row.segment(tb.eta_dot_offset(), n).noalias() -= d.Jc.transpose() * F;
+    if (tb.parent < 0) return;
+    if (tb.on_parent.moves) {
+      const TreeBody& parent = tree_[tb.parent];
+      forces_.col(tb.parent).noalias() += d.X.leftCols<6>().transpose() * F;
+      row.segment(parent.eta_dot_offset(), parent.num_modes()).noalias() +=
+          d.X.rightCols(parent.num_modes()).transpose() * F;
+    } else {
+      const Vector3d f = d.R_PB * F.head<3>();
+      forces_.col(tb.parent).head<3>() += f;
+      forces_.col(tb.parent).tail<3>() += d.r_PoBo.cross(f) + d.R_PB * F.tail<3>();
+    }
+  }
+
+  const Tree& tree_;
+  const TreeData& data_;
+  Matrix6Xd forces_;  ///< about the origin of each body, in its basis; zero between two calls
+};
+
+}  // namespace
 
 MatrixXd calc_dense_rows(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data) {
   // A copy only where a coordinate is held: its column is that of the coordinate set free.
@@ -15,30 +74,27 @@ MatrixXd calc_dense_rows(const Loops& loops, const Tree& tree, const TreeData& t
     calc_position(tree, tree_data.t, tree_data.q, *copy);
   }
   const TreeData& free = copy ? *copy : tree_data;
+  free.demand(Stage::Position);
   LoopData own = data;
   calc_closure_positions(loops, tree, free, own);
-  MatrixXd G = MatrixXd::Zero(get_gaps(loops, data).size(), tree.num_u);
-  Sweep sweep = free.response;
-  for (int column = 0; column < tree.num_u; ++column) {
-    run_rates(tree, free, VectorXd::Unit(tree.num_u, column), sweep);
-    int at = 0;
-    for (const LoopBlock& block : own.blocks) {
-      for (const int i : block.constraints) {
-        const int n = loops[i].num_rows();
+  // Columns of the transpose are contiguous.
+  MatrixXd transposed = MatrixXd::Zero(tree.num_u, get_gaps(loops, data).size());
+  ForceSweep sweep(tree, free);
+  int at = 0;
+  for (const LoopBlock& block : own.blocks) {
+    for (const int i : block.constraints) {
+      const Constraint& c = loops[i];
+      for (int k = 0; c.closure && k < c.num_rows(); ++k) {
         // W as the multipliers have it: a fit that ends elsewhere in rounding may turn its basis.
-        const Constraint& c = loops[i];
-        if (c.closure)
-          G.col(column).segment(at, n) =
-              data[i].own.W.leftCols(n).transpose() *
-              calc_relative_response(tree, free, c.parent_marker, c.child_marker, own[i].relative, sweep);
-        for (const CouplerTerm& term : loops[i].terms) {
-          if (term.u_row == column) G(at, column) += term.ratio;
-        }
-        at += n;
+        const MarkerWrenches wrenches = calc_marker_wrenches(tree, free, c.parent_marker, c.child_marker,
+                                                             own[i].relative, Vector6d(data[i].own.W.col(k)));
+        sweep.add(c.parent_marker, wrenches.on_parent, c.child_marker, wrenches.on_child, transposed.col(at + k));
       }
+      for (const CouplerTerm& term : c.terms) transposed(term.u_row, at) += term.ratio;
+      at += c.num_rows();
     }
   }
-  return G;
+  return transposed.transpose();
 }
 
 void calc_dense_accelerations(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data,

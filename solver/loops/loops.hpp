@@ -126,6 +126,9 @@ Vector6d calc_constraint_wrench(const Loops& loops, const LoopData& data, int co
 /// G of the closed constraints, rows in the order of the blocks, all columns of u, by unit speeds. For assembly and the
 /// second route. After Stage::Position.
 MatrixXd calc_dense_rows(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data);
+/// [1] Sizes of the rows of G as forces, moments divided by Loops::length: row / size is a displacement [L] of any row.
+/// After calc_closure_positions.
+VectorXd calc_row_sizes(const Loops& loops, const LoopData& data);
 /// The second route: [M Gᵀ; G 0] by assembly. After close_loops, whose u̇ gives γ.
 void calc_dense_accelerations(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data,
                               Eigen::Ref<VectorXd> u_dot);

@@ -106,6 +106,16 @@ void apply(const Loops& loops, const Tree& tree, const LoopData& data, double si
 
 }  // namespace
 
+VectorXd calc_row_sizes(const Loops& loops, const LoopData& data) {
+  VectorXd sizes(get_gaps(loops, data).size());
+  int at = 0;
+  for (const LoopBlock& block : data.blocks) {
+    for (const int i : block.constraints)
+      for (int k = 0; k < loops[i].num_rows(); ++k) sizes[at++] = std::sqrt(calc_size(loops, loops[i], data[i], k));
+  }
+  return sizes;
+}
+
 void add_multipliers(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data, Sweep& s) {
   for (const LoopBlock& block : data.blocks) {
     for (const int i : block.constraints) {

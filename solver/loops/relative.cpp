@@ -50,8 +50,7 @@ void calc_relative_position(const Tree& tree, const TreeData& data, int parent_m
   out.R_WHp = parent.body.R_WB * parent.motion.R;
   const Matrix3d R_WM = child.body.R_WB * child.motion.R;
   out.o_W = R_WM * state.p;
-  out.d_W = child.body.p_WBo + child.body.R_WB * child.motion.r + out.o_W -
-            (parent.body.p_WBo + parent.body.R_WB * parent.motion.r);
+  out.d_W = (child.body.calc_place(child.motion.r) - parent.body.calc_place(parent.motion.r)) + out.o_W;
   out.R = out.R_WHp.transpose() * R_WM * state.R;
   out.p = out.R_WHp.transpose() * out.d_W;
 }

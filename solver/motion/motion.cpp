@@ -25,7 +25,10 @@ NodeMotion calc_node_motion(const Motion& motion, int body, int node_index) {
   }
   NodeMotion m;
   const Matrix3d& R = s.R_WB;
-  m.p_WK = s.p_WBo + R * k.r;
+  const Place place = s.calc_place(k.r);
+  m.p_WK = place.p_W;
+  m.p_RK = place.p_R;
+  m.root = place.root;
   m.R_WK = R * k.R_BK;
   m.v_WK = R * (s.v_B + s.w_B.cross(k.r) + k.v);
   m.w_WK = R * (s.w_B + k.w);

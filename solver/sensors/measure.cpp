@@ -16,7 +16,8 @@ using records::SensorType;
 
 /// Motion of the observer, in W; at rest for the inertial frame.
 struct Observer {
-  Vector3d p = Vector3d::Zero(), v = Vector3d::Zero(), a = Vector3d::Zero();
+  Place place;
+  Vector3d v = Vector3d::Zero(), a = Vector3d::Zero();
   Vector3d w = Vector3d::Zero(), alpha = Vector3d::Zero();
 };
 
@@ -25,10 +26,10 @@ Observer calc_observer(const Motion& motion, int body, int node) {
   if (body < 0) return o;
   if (node > 0) {
     const NodeMotion k = calc_node_motion(motion, body, node);
-    return {k.p_WK, k.v_WK, k.a_WK, k.w_WK, k.alpha_WK};
+    return {k.place(), k.v_WK, k.a_WK, k.w_WK, k.alpha_WK};
   }
   const BodyState& s = motion.get_state(body);
-  o.p = s.p_WBo;
+  o.place = s.calc_place(Vector3d::Zero());
   o.v.noalias() = s.R_WB * s.v_B;
   o.a.noalias() = s.R_WB * s.a_B;
   o.w.noalias() = s.R_WB * s.w_B;
@@ -37,7 +38,7 @@ Observer calc_observer(const Motion& motion, int body, int node) {
 }
 
 Matrix3d calc_orbital_axes(const Observer& o, const Sensor& e) {
-  const Vector3d R = o.p - e.orbit->field().centre, h = R.cross(o.v);
+  const Vector3d R = o.place.p_W - e.orbit->field().centre, h = R.cross(o.v);
   if (!(h.norm() > 0))
     throw ComputationError("run.no-orbit", {},
                            "sensor '" + e.name + "' has no LVLH frame: its body moves along the radius",
@@ -54,12 +55,12 @@ Matrix3d calc_orbital_axes(const Observer& o, const Sensor& e) {
 Observer calc_orbital_observer(const Motion& motion, const Sensor& e) {
   const BodyState& s = motion.get_state(e.relative_to);
   Observer o;
-  o.p = s.p_WBo;
+  o.place = s.calc_place(Vector3d::Zero());
   o.v.noalias() = s.R_WB * s.v_B;
-  const Vector3d R = o.p - e.orbit->field().centre;
+  const Vector3d R = o.place.p_W - e.orbit->field().centre;
   const Vector3d h = R.cross(o.v);
   o.w = h / R.squaredNorm();
-  if (!h.isZero(0)) o.w += motion.gravity.calc_acceleration(e.relative_to, o.p).dot(h) / h.squaredNorm() * R;
+  if (!h.isZero(0)) o.w += motion.gravity.calc_acceleration(e.relative_to, o.place.p_W).dot(h) / h.squaredNorm() * R;
   return o;
 }
 
@@ -70,7 +71,7 @@ Vector3d calc_relative(SensorType type, bool from_turning, const NodeMotion& k, 
     o.w.setZero();
     o.alpha.setZero();
   }
-  const Vector3d p = k.p_WK - o.p;
+  const Vector3d p = k.place() - o.place;
   if (type == SensorType::Position) return p;
   const Vector3d v = k.v_WK - o.v - o.w.cross(p);
   if (type == SensorType::Velocity) return v;
@@ -160,7 +161,7 @@ void calc_placement(const Motion& motion, const Sensor& e, const SightTerm& term
   R_AK = k.R_WK;
   if (e.relative_to < 0) return;
   const Matrix3d R_AW = calc_axes(motion, e.relative_to, e.relative_node).transpose();
-  p_AK = R_AW * (k.p_WK - calc_observer(motion, e.relative_to, e.relative_node).p);
+  p_AK = R_AW * (k.place() - calc_observer(motion, e.relative_to, e.relative_node).place);
   R_AK = R_AW * k.R_WK;
 }
 
@@ -219,9 +220,9 @@ void measure(const Motion& motion, const Sensor& e, double* out) {
     case SensorOf::Element:
       return e.recovery->calc(motion, e.row, e.size, out);
     case SensorOf::Gap: {
-      Vector3d other = e.target;
-      if (e.to_body >= 0) other = calc_node_motion(motion, e.to_body, e.to_node).p_WK;
-      *out = (calc_node_motion(motion, e.body, e.node).p_WK - other).norm();
+      Place other{e.target, e.target};
+      if (e.to_body >= 0) other = calc_node_motion(motion, e.to_body, e.to_node).place();
+      *out = (calc_node_motion(motion, e.body, e.node).place() - other).norm();
       return;
     }
     case SensorOf::Elastic: {

@@ -16,7 +16,21 @@ namespace {
 /// Deflection in sizes of the body above which round-off leaves the orders of its series apart.
 constexpr double kMeasuredWay = 1e-5;
 
+/// Joints that hold a body from which on it stretches as it bends, as a plate by its corners.
+constexpr int kMinStretching = 3;
+
 const TreeBody& get_body(const System& system, int body) { return system.tree.bodies[static_cast<size_t>(body)]; }
+
+/// Number of joints that hold a body: its hinge, unless it is free, and constraints.
+int count_joints(const System& system, int body) {
+  int number = get_body(system, body).hinge->num_u() < 6 ? 1 : 0;
+  for (const Constraint& c : system.loops.constraints) {
+    if (!c.closure) continue;
+    for (const int marker : {c.parent_marker, c.child_marker})
+      if (system.tree.markers[static_cast<size_t>(marker)].body == body) ++number;
+  }
+  return number;
+}
 
 }  // namespace
 
@@ -104,8 +118,9 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
                "linear modes are invalid there; ");
       continue;
     }
-    const double next = is_far || is_third ? calc_next_order(body, *where, eta, w.size)
-                                           : body.soft_energy()->calc_error(*where, body.K(), eta);
+    double next = is_far || is_third ? calc_next_order(body, *where, eta, w.size)
+                                     : body.soft_energy()->calc_error(*where, body.K(), eta);
+    if (count_joints(*system_, w.body) >= kMinStretching) next = std::max(next, calc_small_error(body, eta));
     if (next > kNextOrderLimit)
       report(": the next order of its displacements is estimated at " + short_text(100 * next) +
                  " % of that, more than " + short_text(100 * kNextOrderLimit) + " %",

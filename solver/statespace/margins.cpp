@@ -29,8 +29,9 @@ constexpr Index kMaxStates = 300;
 constexpr double kLowest = 1e-3;
 /// Two poles at 1 are found that far from it.
 constexpr double kOnCircle = 1e-7;
-/// A pole with a smaller damping ratio is undamped; L is taken that far from it, relative to its frequency.
-constexpr double kUndamped = 1e-12, kBesidePole = 1e-7;
+/// A pole with a smaller damping ratio is undamped: differences of A have that error. L is taken that far from it,
+/// relative to its frequency.
+constexpr double kUndamped = 1e-7, kBesidePole = 1e-6;
 /// L is smooth where it changes by less than kRough over kBesideCorner of the frequency; a zero turns its phase by more
 /// than kTurned from a decade below it to one above.
 constexpr double kBesideCorner = 1e-7, kRough = 1e-3, kTurned = 0.2;
@@ -512,7 +513,11 @@ records::PeakGain calc_peak_gain(const records::LinearModel& model, const record
   const StablePart part = split_stable(model.A);
   if (!part.is_stable()) {
     std::ostringstream why;
-    why << "the pole " << part.unstable.real() << " ± " << std::abs(part.unstable.imag()) << " i does not decay";
+    const double real = part.unstable.real(), imag = std::abs(part.unstable.imag());
+    if (imag > 0 && std::abs(real) <= kUndamped * imag)
+      why << "the poles ± " << imag << " i are on the imaginary axis within rounding (real part " << real << ")";
+    else
+      why << "the pole " << real << " ± " << imag << " i does not decay";
     peak.why = why.str();
   } else if (part.num_rigid > 0 &&
              is_seen({model.A, model.B, model.C},

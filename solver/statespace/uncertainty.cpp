@@ -37,7 +37,7 @@ MatrixXd get_accelerations(const LinearModel& m) {
 /// Dependence of outputs on δü, by what all models have in common: y changes with them as Ca δü does.
 MatrixXd find_acceleration_outputs(const LinearModel& nominal, const std::vector<const LinearModel*>& others) {
   const Sizes s(nominal);
-  const auto width = (s.nx + s.nu) * static_cast<Index>(others.size());
+  const auto num_models = static_cast<Index>(others.size()), width = (s.nx + s.nu) * num_models;
   MatrixXd y(s.ny, width), a(s.n, width);
   for (std::size_t k = 0; k < others.size(); ++k) {
     const auto at = static_cast<Index>(k) * (s.nx + s.nu);
@@ -45,8 +45,12 @@ MatrixXd find_acceleration_outputs(const LinearModel& nominal, const std::vector
     a.middleCols(at, s.nx + s.nu) = get_accelerations(*others[k]) - get_accelerations(nominal);
   }
   if (s.n == 0 || a.cwiseAbs().maxCoeff() == 0) return MatrixXd::Zero(s.ny, s.n);
-  // Columns of one size, so that the rank does not depend on units.
-  const VectorXd scale = a.colwise().norm().transpose().cwiseMax(1e-300);
+  // Columns of one size, so that the rank does not depend on units: a size for a state or input in all models, since
+  // that of one model may be round-off.
+  VectorXd sizes = VectorXd::Zero(s.nx + s.nu);
+  for (Index k = 0; k < num_models; ++k)
+    sizes = sizes.cwiseMax(a.middleCols(k * sizes.size(), sizes.size()).colwise().norm().transpose());
+  const VectorXd scale = sizes.cwiseMax(1e-300).replicate(num_models, 1);
   const MatrixXd a_scaled = a * scale.cwiseInverse().asDiagonal(), y_scaled = y * scale.cwiseInverse().asDiagonal();
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
   solver.setThreshold(1e-8);
@@ -65,6 +69,31 @@ MatrixXd make_rows(const LinearModel& m, const MatrixXd& Ca) {
   R.bottomLeftCorner(s.ny, s.n) = Ca;
   R.bottomRightCorner(s.ny, s.nx + s.nu) = join(m.C, m.D) - Ca * a;
   return R;
+}
+
+/// Largest terms that each row of R sums: an output that feels an acceleration nearly cancels in y - Ca δü.
+VectorXd calc_row_sizes(const LinearModel& m, const MatrixXd& Ca) {
+  const Sizes s(m);
+  const MatrixXd a = get_accelerations(m).cwiseAbs();
+  VectorXd size = make_rows(m, Ca).cwiseAbs().rowwise().maxCoeff();
+  if (s.n == 0) return size;
+  auto forces = size.segment(s.n, s.n), outputs = size.tail(s.ny);
+  forces = forces.cwiseMax((m.mass.cwiseAbs() * a).rowwise().maxCoeff());
+  if (s.ny > 0) outputs = outputs.cwiseMax((Ca.cwiseAbs() * a).rowwise().maxCoeff());
+  return size;
+}
+
+/// An output that is next to zero, as a component of an acceleration across the motion, is judged by others of its
+/// dimension: what is left of it is round-off, and the residual of the equilibrium.
+void raise_small_outputs(const LinearModel& m, VectorXd& row_size) {
+  constexpr double kSmall = 1e-4;
+  const Sizes s(m);
+  auto outputs = row_size.tail(s.ny);
+  const VectorXd own = outputs;
+  for (Index i = 0; i < s.ny; ++i)
+    for (Index j = 0; j < s.ny; ++j)
+      if (m.outputs.dims[static_cast<std::size_t>(i)] == m.outputs.dims[static_cast<std::size_t>(j)])
+        outputs[i] = std::max(outputs[i], kSmall * own[j]);
 }
 
 /// \param models  all that were compared: where one of them accelerates, M A_u has -(∂M/∂q) u̇, u̇ = M⁻¹ f.
@@ -128,8 +157,9 @@ LinearModel make_uncertain_model(const LinearModel& nominal, const std::vector<P
   others.push_back(&together);
   const MatrixXd Ca = find_acceleration_outputs(nominal, others);
   const MatrixXd R0 = make_rows(nominal, Ca);
-  VectorXd row_size = R0.cwiseAbs().rowwise().maxCoeff();
-  for (const auto* other : others) row_size = row_size.cwiseMax(make_rows(*other, Ca).cwiseAbs().rowwise().maxCoeff());
+  VectorXd row_size = calc_row_sizes(nominal, Ca);
+  for (const auto* other : others) row_size = row_size.cwiseMax(calc_row_sizes(*other, Ca));
+  raise_small_outputs(nominal, row_size);
   row_size = (row_size.array() > 0).select(row_size, 1);
   const double noise = std::max(1e-11, error), tolerance = 100 * noise, allowed = 1e-6;
   const auto is_zero = [&](const MatrixXd& R) {

@@ -14,7 +14,7 @@ constexpr double kAngle = 0.1, kShare = 0.05;
 }  // namespace
 
 Difference differentiate_system(SystemData& data, LawTangents& tangents, const std::function<VectorXd(double)>& f,
-                                double step, bool is_far, std::vector<LawKink>* kinks) {
+                                double step, bool has_large_terms, std::vector<LawKink>* kinks) {
   struct Scope {
     TreeData& tree;
     ~Scope() { tree.tangents = nullptr; }
@@ -28,7 +28,7 @@ Difference differentiate_system(SystemData& data, LawTangents& tangents, const s
           tangents.replay(side);
           return f(h);
         },
-        step, is_far);
+        step, has_large_terms);
   };
   Difference mean = differentiate_side(0);
   const auto found = tangents.list_kinks();

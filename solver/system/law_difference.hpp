@@ -16,11 +16,12 @@ namespace bough::solver {
 ///
 /// \param tangents  scratch.
 /// \param kinks  gains the functions with two slopes that have an effect; nullptr: not requested.
-/// \param is_far  as of lies_far().
+/// \param has_large_terms  f is a small difference of its terms (lies_far()) or of the positions of closed loops: its
+///     round-off is measured, by eight evaluations more.
 /// \return Difference::kink holds the effect of functions with two slopes at f(0).
 /// \throws as solver::differentiate.
 Difference differentiate_system(SystemData& data, LawTangents& tangents, const std::function<VectorXd(double)>& f,
-                                double step, bool is_far, std::vector<LawKink>* kinks = nullptr);
+                                double step, bool has_large_terms, std::vector<LawKink>* kinks = nullptr);
 
 /// Returns displacements that are large but not absurd, by row of u: 0.1 rad; 5 % of the size of the largest body that
 /// a translation moves; of a mode, the amplitude that deflects its body by as much of its size, or rotates a node by

@@ -47,7 +47,10 @@ void calc_body_position(const Tree& tree, int b, TreeData& data) {
   d.R_PB = p.R * d.hinge.R_HpHc * c.R.transpose();
   d.r_PoBo = p.r + p.R * d.hinge.p_HpHc - d.R_PB * c.r;
   d.state.R_WB = parent.R_WB * d.R_PB;
-  d.state.p_WBo = parent.p_WBo + parent.R_WB * d.r_PoBo;
+  const Vector3d r_W = parent.R_WB * d.r_PoBo;
+  d.state.p_WBo = parent.p_WBo + r_W;
+  d.state.root = tb.parent < 0 ? b : parent.root;
+  d.state.p_RBo = tb.parent < 0 ? Vector3d::Zero() : Vector3d(parent.p_RBo + r_W);
 
   if (tb.constant_H.size() == 0 && d.num_free > 0) {
     const Matrix3d R_BHp = d.R_PB.transpose() * p.R;

@@ -246,6 +246,8 @@ class ComplexModes(ProgramTest):
         for wrong, error in ((case.replace("1, 3", "77"), "modal.empty-selection"), ("MODSEL = 6", "modal.missing-set")):
             self.write("d.bdf", make_chain("110", "", wrong))
             self.fails(1, "modes", "d.bdf", error=error, says=["MODSEL"])
+        self.near(self.solve(make_chain("107", "", case)), expected)
+        self.assertIn("warning: MODSEL selects real modes", self.bough("modes", "d.bdf").stderr)
 
     def test_overdamped(self):
         """Two real eigenvalues, g = 0."""

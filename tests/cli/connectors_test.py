@@ -1,4 +1,4 @@
-"""CFAST and CWELD: RBE3 with CBUSH or CBAR, affine fields, two coupons in tension, rigid-body modes."""
+"""CFAST and CWELD: RBE3 with CBUSH or CBAR, affine fields, two coupons in tension, rigid-body modes, buckling."""
 import math
 import unittest
 
@@ -221,16 +221,110 @@ class Connectors(ProgramTest):
 
     def test_other_units_and_written_deck(self):
         fast = f"CFAST,50,50,PROP,1,2\n,{real(CENTRE[0])},{real(CENTRE[1])},0.\n" + PFAST.format(d=".03", mass="") + \
-            f"CWELD,52,52,,PARTPAT\n,1,2\n,.33,.31,0.\nPWELD,52,9,.02\nMAT1,9,2.+9,,.3\n"
+            f"CWELD,52,52,,PARTPAT\n,1,2\n,.33,.31,0.\nPWELD,52,9,.02\nMAT1,9,2.+9,,.3\nGRID,902,,.21,.12,.5\n" \
+            "CFAST,53,50,ELEM,106,206,902\nCWELD,54,52,902,ELPAT\n,106,206\nCWELD,55,52,,ALIGN,112,212\nSPC1,1,123456,902\n"
         u = self.displacements(self.static(CLAMP + LOADS + fast))
         self.bough("convert", "d.bdf", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.bdf")
         self.bough("export", "d.bdf", "--to", "bdf", "-o", "n.bdf")
         for name, factor in (("mm", 1e3), ("n", 1)):
-            self.bough("static", f"{name}.bdf", "-o", f"{name}.h5")
+            self.assertNotIn("deck.", self.bough("static", f"{name}.bdf", "-o", f"{name}.h5").stderr)
             with h5py.File(self.path(f"{name}.h5")) as f:
                 group = f["subcases"][list(f["subcases"])[0]]
                 v = group["displacement"][()].reshape(-1, 6)
             np.testing.assert_allclose(v[:, :3], factor * u[:, :3], rtol=0, atol=1e-7 * np.abs(v[:, :3]).max())
+
+    def buckle(self, bulk):
+        """Lowest load factor of a rigid plate on one connector."""
+        grids = [100 + k for k in range(25)], [200 + k for k in range(25)]
+        x, y = CENTRE
+        rigid = f"GRID,800,,{real(x)},{real(y)},{real(GAP)}\nRBE2,801,800,123456," + ",".join(map(str, grids[1][:5])) + "\n"
+        for k in range(5, 25, 8):
+            rigid += "," + ",".join(map(str, grids[1][k:k + 8])) + "\n"
+        case = ("SPC = 1", "SUBCASE 1", "LOAD = 5", "SUBCASE 2", "METHOD = 1")
+        self.write("d.bdf", make(105, case, "EIGRL,1,,,2\nSPC1,1,123456,100,THRU,124\n" + rigid + bulk))
+        self.bough("modes", "d.bdf", "--buckling", "-o", "d.h5")
+        with h5py.File(self.path("d.h5")) as f:
+            return f["buckling/load_factor"][()]
+
+    def test_rigid_plate_on_a_fastener_buckles(self):
+        """A couple of forces M on a plate whose hinge has k_x and k_z: ½ k θ² + ½ M θ_x θ_z, M = 2 √(k_x k_z)."""
+        loads = "FORCE,5,200,0,1.,0.,0.,1.+5\nFORCE,5,204,0,1.,0.,0.,-1.+5\n"  # 4e4 about y
+        fast = f"GRID,900,,{real(CENTRE[0])},{real(CENTRE[1])},.5\nSPC1,1,123456,900\nCFAST,50,50,PROP,1,2,900\n" \
+            "PFAST,50,.03,0,0,1.+9,1.+9,2.+9,1.+5\n,1.+9,4.+5\n"
+        factors = self.buckle(fast + loads)
+        self.assertAlmostEqual(min(abs(factors)), 2 * math.sqrt(1e5 * 4e5) / 4e4, delta=1e-6)
+
+    def test_buckling_as_between_grids(self):
+        """CFAST as CBUSH, CWELD as CBAR between a fixed grid and the grid of the rigid plate, under any loads."""
+        x, y, d = *CENTRE, .004
+        place = f"GRID,900,,{real(x)},{real(y)},.5\nSPC1,1,123456,900\n"
+        ground = f"GRID,802,,{real(x)},{real(y)},0.\nSPC1,1,123456,802\nCORD2R,7,,0.,0.,0.,1.,0.,0.\n,0.,0.,1.\n"
+        area, inertia = math.pi * d**2 / 4, math.pi * d**4 / 64
+        bar = f"CBAR,50,50,802,800,1.,0.,0.\nPBAR,50,9,{real(area)},{real(inertia)},{real(inertia)},{real(2 * inertia)}\n,\n,.9,.9\n"
+        bush = "CBUSH,50,50,802,800,,,,7\nPBUSH,50,K,1.+7,2.+7,1.+7,4.+3,3.+3,2.+3\n"
+        fast = place + "CFAST,50,50,PROP,1,2,900\nPFAST,50,.03,7,0,1.+7,2.+7,1.+7,4.+3\n,3.+3,2.+3\n"
+        weld = f"PWELD,50,9,{real(d)}\n,.1,50.\n"
+        cases = [(bush, [fast + "CORD2R,7,,0.,0.,0.,1.,0.,0.\n,0.,0.,1.\n"]),
+                 (bar, [place + "CWELD,50,50,900,PARTPAT\n,1,2\n" + weld, place + "CWELD,50,50,900,ELEMID\n,105,205\n" + weld])]
+        for load in ((1, 0, 0), (.3, -.2, -1), (0, 0, -1)):
+            loads = f"MAT1,9,7.+10,,.3\nFORCE,5,200,0,300.,{','.join(map(real, load))}\nFORCE,5,218,0,200.,-.2,.3,.1\n"
+            for grids, connectors in cases:
+                expected = self.buckle(ground + grids + loads)
+                for connector in connectors:
+                    with self.subTest(connector, load=load):
+                        np.testing.assert_allclose(self.buckle(connector + loads), expected, rtol=1e-8)
+
+    def test_large_displacements(self):
+        """A soft fastener whose plates turn against each other, as CBUSH between RBE3, which follow finite means."""
+        loads = "FORCE,5,204,0,60.,1.,.3,.2\nFORCE,5,224,0,50.,.4,-.2,1.\n"
+        bush = self.make_joint("CBUSH,50,50,901,902,,,,0\nPBUSH,50,K,3.+5,2.+5,1.+5,40.,30.,20.\n")
+        fast = f"GRID,900,,{real(CENTRE[0])},{real(CENTRE[1])},.5\nSPC1,1,123456,900\nCFAST,50,50,PROP,1,2,900\n" \
+            f"PFAST,50,{real(DIAMETER)},0,0,3.+5,2.+5,1.+5,40.\n,30.,20.\n"
+        u = []
+        for cards in (bush, fast):
+            self.write("d.bdf", make(101, ("SPC = 1", "LOAD = 5"), CLAMP + loads + cards))
+            self.bough("static", "d.bdf", "--nonlinear", "-o", "d.h5")
+            with h5py.File(self.path("d.h5")) as f:
+                u.append(f["subcases"][list(f["subcases"])[0]]["displacement"][()].reshape(-1, 6)[:50])
+        turn = np.linalg.norm(u[0][25:, 3:], axis=1).mean() - np.linalg.norm(u[0][:25, 3:], axis=1).mean()
+        self.assertGreater(turn, .3)
+        np.testing.assert_allclose(u[1], u[0], rtol=0, atol=1e-8 * np.abs(u[0]).max())
+
+    def test_length_of_spot_welds(self):
+        """Half the thickness of both shells: of plies, and of T1 to T4, as LDMIN = LDMAX gives it."""
+        d, place = .03, f"GRID,900,,{real(CENTRE[0])},{real(CENTRE[1])},.5\nMAT1,9,2.+9,,.3\n"
+        forms = ("900,PARTPAT\n,1,2\n", "900,ELPAT\n,105,205\n", "900,ELEMID\n,105,205\n")
+        plies = PLATES.replace("PSHELL,1,1,.004,1,,1\n", "PCOMP,1,,,,,,,SYM\n,1,.001,,,1,.0015,\n")
+        lines = []
+        for line in PLATES.splitlines():
+            fields = line.split(",")
+            lines.append(line + ",,\n,,,.002,.004,.006,.006" if fields[0] == "CQUAD4" and fields[2] == "1" else line)
+        for plates, thickness in ((PLATES, .004), (plies, .005), ("\n".join(lines) + "\n", .0045)):
+            length = .5 * (thickness + .003)
+            for form in forms:
+                u = []
+                for end in (",,,,SPOT\n", f"\n,{real(length / d)},{real(length / d)}\n"):
+                    weld = place + f"CWELD,50,50,{form}PWELD,50,9,{real(d)},{end}" if "SPOT" in end else \
+                        place + f"CWELD,50,50,{form}PWELD,50,9,{real(d)}{end}"
+                    self.write("d.bdf", make(101, ("SPC = 1", "LOAD = 5"), CLAMP + LOADS + weld).replace(PLATES, plates))
+                    self.bough("static", "d.bdf", "-o", "d.h5")
+                    with h5py.File(self.path("d.h5")) as f:
+                        u.append(f["subcases"][list(f["subcases"])[0]]["displacement"][()])
+                with self.subTest(form, thickness=thickness):
+                    np.testing.assert_allclose(u[0], u[1], rtol=0, atol=1e-9 * np.abs(u[1]).max())
+
+    def test_doubtful_cards(self):
+        """A fastener without stiffness, and a place that is given twice."""
+        place = "GRID,900,,.15,.17,.5\nSPC1,1,123456,900\n"
+        fast = "CFAST,50,50,PROP,1,2,900\n"
+        for cards, words in [(place + fast + "PFAST,50,.03\n", ["fe.connector-stiffness", "PFAST 50", "KT1 to KR3"]),
+                             (place + fast + ",.1,.1,0.\n" + PFAST.format(d=".03", mass=""), ["deck.unused-field", "GS gives the place"]),
+                             (place + "CWELD,50,50,900,PARTPAT\n,1,2\n,.1,.1,0.\nPWELD,50,9,.02\nMAT1,9,2.+9,,.3\n",
+                              ["deck.unused-field", "GS gives the place"])]:
+            support = "SPC1,1,123456,200,205,210,215,220\n"
+            self.static(CLAMP + LOADS + support + cards)
+            for word in words:
+                self.assertIn(word, self.result.stderr)
 
     def test_rejected_input(self):
         pfast, place = PFAST.format(d=".03", mass=""), "GRID,900,,.15,.17,.5\n"
@@ -239,6 +333,9 @@ class Connectors(ProgramTest):
                 (place + "CFAST,50,50,PROP,1,7,900\n" + pfast, "fe.connector-shell", ["CFAST 50", "property 7"]),
                 (place + "CFAST,50,50,ELEM,105,777,900\n" + pfast, "fe.connector-shell", ["shell 777"]),
                 ("GRID,900,,.9,.17,.5\nCFAST,50,50,PROP,1,2,900\n" + pfast, "fe.connector-projection", ["property 1"]),
+                ("GRID,900,,.0,.17,.5\nCFAST,50,50,PROP,1,2,900\n" + pfast, "fe.connector-projection", ["is on the rim", "0.001875"]),
+                (place + "CFAST,50,50,PROP,1,1,900\n" + pfast, "fe.connector-sides", ["property 1 on both sides"]),
+                (place + "CWELD,50,50,900,ELEMID\n,105,105\n" + weld, "fe.connector-sides", ["shell 105 on both sides"]),
                 (place + "CWELD,50,50,900,ELEMID\n,105\n" + weld, "fe.connector-form", ["point to a patch"]),
                 (place + "CFAST,50,50,PROP,1,2\n" + pfast, "deck.missing-field", ["GS, GA and XS"]),
                 (place + "CFAST,50,51,PROP,1,2,900\n" + pfast, "fe.missing-property", ["PFAST"]),
@@ -256,6 +353,36 @@ class Connectors(ProgramTest):
         self.write("d.bdf", make(101, ("SPC = 1", "LOAD = 5"), CLAMP + LOADS + "SPC1,1,123456,300,305,310,315,320\n" + "\n".join(lines) +
                                  "\n" + place + "CFAST,50,50,PROP,1,3,900\nCFAST,51,50,PROP,2,3,900\n" + pfast))
         self.assertIn("fe.connector-angle", self.bough("static", "d.bdf").stderr)
+
+    def test_shells_by_property_and_by_id(self):
+        """Connectors by property equal those by shells: plates of 400 shells, five sides of a shell apart."""
+        n = 20
+        bulk = make_plate(1000, 1, 0, n) + make_plate(2000, 2, 5 * A, n, .03)
+        bulk += "PSHELL,1,1,.004,1,,1\nPSHELL,2,1,.003,1,,1\nMAT1,1,7.+10,,.3,2700.\nSPC1,1,123456,1000,THRU,1020\n"
+        bulk += "FORCE,5,2440,0,70.,1.,.3,.2\n" + PFAST.format(d=real(.03), mass="0.") + "PWELD,60,1,.03\n"
+        random = np.random.default_rng(5)
+        decks = ["", ""]
+        for k, (x, y) in enumerate(np.round(random.uniform(.05, 1.95, (30, 2)), 4)):
+            a, b = (first + int(y / A) * n + int((x - x0) / A) for first, x0 in ((1000, 0), (2000, .03)))
+            place = f"{real(x)},{real(y)},{real(float(random.choice((-3., 0., .25, 2.))))}"
+            if k % 2:
+                forms = f"PROP,1,2,,,,\n,{place}", f"ELEM,{a},{b},,,,\n,{place}"
+                decks = [deck + f"CFAST,{9001 + k},50,{form}\n" for deck, form in zip(decks, forms)]
+            else:
+                forms = f"PARTPAT,,,,,\n,1,2,,,,,,,\n,{place}", f"ELPAT,,,,,\n,{a},{b},,,,,,,\n,{place}"
+                decks = [deck + f"CWELD,{9001 + k},60,,{form}\n" for deck, form in zip(decks, forms)]
+        case = ["SPC = 1", "LOAD = 5"]
+        found = []
+        for deck in decks:
+            self.write("d.bdf", "\n".join(["SOL 101", "CEND", *case, "BEGIN BULK", bulk + deck, "ENDDATA", ""]))
+            self.bough("static", "d.bdf", "-o", "d.h5", "-q")
+            with h5py.File(self.path("d.h5")) as f:
+                group = f["subcases"][list(f["subcases"])[0]]
+                arrays = {}
+                group.visititems(lambda path, item: arrays.update({path: item[()]}) if isinstance(item, h5py.Dataset) else None)
+            found.append(self.displacements(arrays))
+        self.assertGreater(np.abs(found[0]).max(), 0)
+        np.testing.assert_allclose(found[0], found[1], rtol=0, atol=1e-9 * np.abs(found[1]).max())
 
 
 if __name__ == "__main__":

@@ -199,7 +199,7 @@ class Page(BrowserTest):
             self.assertIn(f"(element {element})", ends)
         # A click tells the element and its number: the middle of element 6; the rod, which is a line.
         text = self.click_in_scene((1.5, 1.5, 0))
-        self.assertRegex(text, r"^element 6, property 1: von Mises stress \S+ F/L\^2")
+        self.assertRegex(text, r"^element 6, property 1: von Mises stress \S+ F/L²")
         self.assertAlmostEqual(float(text.split()[-2]), stress[6], delta=1e-3 * stress[6])
         # The middle of the rod as it is drawn.
         middle = b.run(f"""(() => {{ const t = {self.VIEW}.viewer.things.find((t) => t.levels), ids = Array.from(t.ids);

@@ -311,8 +311,7 @@ class OtherCards(Decks):
                 messages = self.bough(command, "m.bdf", *options, *(("-n", "1") if command == "modes" else ())).stderr
                 self.assertRegex(messages, r"DISPLACEMENT\(PUNCH\), SPCFORCES\(PUNCH\), .*\[cli.request-by-option\]")
                 self.assertEqual(messages.count("(PUNCH)"), 2)
-            self.assertRegex(messages, r"the listing has no strains \(STRAIN\).*\[cli.unlisted-elements\]")
-            self.assertRegex(messages, r"the listing has no stresses of CBUSH.*\[cli.unlisted-elements\]")
+            self.assertNotIn("[cli.unlisted-elements]", messages)  # strains, and stresses of CBUSH, are listed
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import numpy as np
 
 from support import ProgramTest
 from toml_text import section, table, toml
+from uncertain_test import close
 
 N, LENGTH = 6, 6.0
 FULL, HALF = 40.0, 15.0
@@ -85,6 +86,39 @@ class FillLevels(ProgramTest):
         balance = energy - found["energy/work"].ravel()
         np.testing.assert_allclose(balance, balance[0], rtol=0, atol=1e-9 * np.abs(energy).max())
         self.assertNotIn("run.energy", done.stderr)
+
+    def test_uncertain_modes_are_those_of_the_level_in_use(self):
+        """Past the switch, closed with delta, against files of all levels whose stiffness and damping are changed."""
+        for name in ("full", "half"):
+            self.write(f"{name}.toml", make_body(name) + "[body.damping]\nratio = 0.02\n")
+            self.bough("reduce", f"{name}.toml", "-o", f"{name}.h5", "-q")
+        text = make_system([switch(0.05, 2)], more=toml(
+            table("function", "none", "constant", value=0.0),
+            table("force", "push", body="payload", force=[0.0, 1.0, 0.0], function="none")), duration=0.1)
+        self.write("s.toml", text.replace("position = [0.05, -0.02]\n", "").replace("rate = [0.1, 0.2]\n", ""))
+        plain = ("linearize", "s.toml", "--at", "0.1", "--inputs", "push", "--outputs", "top", "-q")
+        self.bough(*plain, "-o", "lft.h5", "--uncertain", "stage:eta7:stiffness=0.8:1.2", "--uncertain", "stage:eta8:damping=0.5:1.5")
+        self.bough(*plain, "-o", "file.h5")
+        for name in ("full", "half"):
+            with h5py.File(self.path(f"{name}.h5"), "r+") as f:
+                f["modal/stiffness"][6, 6] *= 1.1
+                f["modal/damping"][7, 7] *= 1.3
+        self.bough(*plain, "-o", "changed.h5")
+        A = {}
+        for name in ("file", "changed"):
+            with h5py.File(self.path(f"{name}.h5")) as f:
+                A[name] = f["A"][:]
+        self.assertGreater(np.abs(A["changed"] - A["file"]).max(), 1.0)
+        with h5py.File(self.path("lft.h5")) as f:
+            for name, delta in (("file", (0.0, 0.0)), ("changed", (0.5, 0.6))):
+                np.testing.assert_allclose(close(f, delta)[0], A[name], rtol=0, atol=1e-9 * np.abs(A[name]).max())
+
+    def test_modes_of_levels_are_not_selected(self):
+        more = table("force", "push", body="payload", force=[0.0, 1.0, 0.0])
+        self.write("s.toml", make_system([switch(0.08, 2)], more=more))
+        for arguments in (("s.toml", "-o", "sel"), ("full.h5", "s.toml", "-o", "f.h5"), ("half.h5", "s.toml", "-o", "h.h5")):
+            found = self.bough("select", *arguments, "-n", "3", "--at", "0.1", code=1).stderr
+            self.assertRegex(found, r"s\.toml:1: error: body 'stage' has fill levels.*select.levels")
 
     def test_the_structure_goes_on_where_it_is(self):
         """Places and velocities of nodes do not jump: those of the interface at all, inner ones by what modes leave."""

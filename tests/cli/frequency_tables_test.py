@@ -146,9 +146,37 @@ class FrequencyTables(DeckResponse):
         for tables, error, says in [("PELAST,10,77\n", "modal.missing-table", ["PELAST 10", "77"]),
                                     ("PBUSHT,30,Q,77\n", "deck.bad-word", ["flag"]),
                                     ("PBUSHT,30,,77\n", "deck.missing-field", ["without a flag"]),
+                                    ("PELAST,11,101\n" + TABLES, "modal.table-without-property", ["PELAST 11", "PELAS 11", "d.bdf:"]),
+                                    ("PDAMPT,30,103\n" + TABLES, "modal.table-without-property", ["PDAMPT 30", "PDAMP 30"]),
+                                    ("PBUSHT,20,K,101\n" + TABLES, "modal.table-without-property", ["PBUSHT 20", "PBUSH 20"]),
                                     ("PDAMPT,20,103\nPDAMPT,20,103\n", "deck.duplicate-id", ["20"])]:
             self.write("d.bdf", PAIR.format(sol=108, case="", tables=tables))
             self.fails(1, "frequency", "d.bdf", error=error, says=says)
+
+
+    def test_one_table_for_a_load_and_a_property(self):
+        """Values of different dimensions in one table are an error of `convert`, unless their factors are equal."""
+        load, shared = "RLOAD1,9,10,,,1.0", "RLOAD1,9,10,,,101"
+        deck = PAIR.format(sol=108, case="", tables=TABLES)
+        for old, new in ((load, shared), (load, shared.replace("101", "103")), ("TABLED1,101", "TLOAD1,7,10,,,101\nTABLED1,101")):
+            self.write("d.bdf", deck.replace(old, new))
+            self.fails(1, "convert", "d.bdf", "--units", "m-kg-s:mm-tonne-s", "-o", "no.bdf", error="deck.unit-field",
+                       says=["d.bdf:", "TABLED1", "different dimensions"])
+        # K = M/T² does not change with the unit of length; GE has no dimension.
+        self.write("d.bdf", deck.replace(load, shared))
+        self.bough("convert", "d.bdf", "--units", "m-kg-s:mm-kg-s", "-o", "fine.bdf")
+        self.assertIn("80.", self.read("fine.bdf"))
+        self.write("d.bdf", deck.replace(load, shared.replace("101", "102")))
+        self.bough("convert", "d.bdf", "--units", "m-kg-s:mm-tonne-s", "-o", "fine.bdf")
+
+    def test_selection_of_modes_without_modes(self):
+        """MODSEL in direct solutions is left out with a warning."""
+        for sol, command in ((108, "frequency"), (109, "transient")):
+            self.write("d.bdf", PAIR.format(sol=sol, case="SET 4 = 1\nMODSEL = 4\nTSTEP = 6", tables="TSTEP,6,20,.01\nTLOAD2,7,10,,,0.,9.,1.")
+                       .replace("DLOAD = 9", "DLOAD = 9" if sol == 108 else "DLOAD = 7"))
+            result = self.bough(command, "d.bdf", "-o", "d.h5")
+            self.assertIn("warning: MODSEL", result.stderr)
+            self.assertIn("[modal.no-modes]", result.stderr)
 
 
 # A rigid shaft with its mass in the middle on two bearings across x; two flexible beams.

@@ -202,6 +202,69 @@ class MaterialTemperatures(ProgramTest):
         u, v = before[name].reshape(13, 6), after[name].reshape(13, 6)
         np.testing.assert_allclose(v[:, :3], 1e3 * u[:, :3], rtol=0, atol=1e-9 * np.abs(v).max())
 
+    def test_sections_of_superelements(self):
+        """A cantilever in a section: F L³ / (3 E(T) I) by the set of the section, in all cases or by its subcase."""
+        F, L, inertia = 90.0, 2.0, 3e-7
+        deck = "\n".join(["SOL 101", "CEND", "SPC = 1", "LOAD = 5", "{case}", "BEGIN BULK", "GRID,1,,0.,0.,0.", "GRID,3,,2.,0.,0.",
+                          "SPC1,1,123456,1", f"FORCE,5,3,0,{F},0.,1.,0.", "{main}BEGIN SUPER = 1", "GRID,1,,0.,0.,0.",
+                          "GRID,2,,1.,0.,0.", "GRID,3,,2.,0.,0.", "CBAR,1,5,1,2,0.,1.,0.", "CBAR,2,5,2,3,0.,1.,0.",
+                          "PBAR,5,1,1.-3,3.-7,2.-7,4.-7", "MAT1,1,7.+10,,.3", "{section}ENDDATA", ""])
+        tables = "MATT1,1,31\nTABLEM1,31\n,0.,8.+10,100.,6.+10,ENDT\n"
+        for case, section, modulus in [
+                ("TEMPERATURE(MATERIAL) = 6", tables + "TEMPD,6,90.\n", 6.2e10),
+                ("TEMPERATURE(INITIAL) = 6", tables + "TEMPD,6,90.\n", 6.2e10),
+                ("TEMPERATURE(MATERIAL) = 6", tables + "TEMP,6,1,80.,2,80.\nTEMP,6,3,80.\n", 6.4e10),
+                ("TEMPERATURE(MATERIAL) = 6", "TEMPD,6,90.\n", 7e10)]:
+            found = self.static(deck.format(case=case, main="", section=section))
+            name = next(n for n in found if "displacement" in n)
+            v = found[name].reshape(-1, 6)[-1, 1]
+            self.assertAlmostEqual(v / (F * L**3 / (3 * modulus * inertia)), 1, places=9)
+        self.write("d.bdf", deck.format(case="TEMPERATURE(MATERIAL) = 6", main="TEMPD,6,90.\n", section=tables))
+        self.fails(1, "static", "d.bdf", error="fe.part-temperature", says=["superelement 1", "temperature set 6", "its section"])
+        self.write("d.bdf", deck.format(case="TITLE = none", main="", section=tables))
+        self.assertIn("fe.material-tables-unused", self.bough("static", "d.bdf").stderr)
+
+    def test_tables_over_frequency_in_sections(self):
+        """A section is condensed once: a spring with a table in it is an error of responses, and no matter of statics."""
+        deck = "\n".join(["SOL 108", "CEND", "SPC = 1", "LOAD = 5", "DLOAD = 4", "FREQ = 5", "BEGIN BULK", "GRID,1,,0.,0.,0.,,23456",
+                          "GRID,2,,1.,0.,0.,,23456", "SPC1,1,1,1", "CONM2,9,2,,1.", "DAREA,3,2,1,1.", "RLOAD1,4,3,,,1.", "FREQ,5,2.",
+                          "FORCE,5,2,0,1.,1.,0.,0.", "BEGIN SUPER = 1", "GRID,1,,0.,0.,0.,,23456", "GRID,2,,1.,0.,0.,,23456",
+                          "CELAS1,1,1,1,1,2,1", "PELAS,1,1.+4", "PELAST,1,7", "TABLED1,7", ",0.,9.+3,9.,2.+4,ENDT", "ENDDATA", ""])
+        self.write("d.bdf", deck)
+        self.fails(1, "frequency", "d.bdf", error="modal.part-tables", says=["PELAST of superelement 1", "main bulk data"])
+        found = self.static(deck.replace("SOL 108", "SOL 101").replace("DLOAD = 4\nFREQ = 5\n", ""))
+        name = next(n for n in found if "displacement" in n)
+        self.assertAlmostEqual(found[name].reshape(-1, 6)[1, 0], 1e-4, places=12)
+
+    def test_welds_on_shells(self):
+        """The material of a weld is at the mean of the grids of its two shells, wherever its place is given."""
+        grids = "".join(f"GRID,{100 * k + 10 * j + i},,{.1 * i:.1f},{.1 * j:.1f},{.02 * (k - 1):.2f}\n"
+                        for k in (1, 2) for j in range(4) for i in range(4))
+        shells = "".join(f"CQUAD4,{100 * k + 10 * j + i},{k},{100 * k + 10 * j + i},{100 * k + 10 * j + i + 1},"
+                         f"{100 * k + 10 * j + i + 11},{100 * k + 10 * j + i + 10}\n" for k in (1, 2) for j in range(3) for i in range(3))
+        temperatures = "".join(f"TEMP,6,{100 * k + 10 * j + i},{3.0 * i + 5 * j + 20 * k}\n" for k in (1, 2) for j in range(4)
+                               for i in range(4))
+        # Shells 112 and 212: grids of columns 2 and 3, rows 1 and 2.
+        T = np.mean([3.0 * i + 5 * j + 20 * k for k in (1, 2) for j in (1, 2) for i in (2, 3)])
+        head = "SOL 101\nCEND\nSPC = 1\nLOAD = 5\nTEMPERATURE(MATERIAL) = 6\nBEGIN BULK\nSPC1,1,123456,100,110,120,130\n" \
+            "FORCE,5,233,0,70.,1.,.3,.2\nPSHELL,1,1,.004,1,,1\nPSHELL,2,1,.003,1,,1\nMAT1,1,7.+10,,.3,2700.\nPWELD,50,9,.02\n"
+        place = "GRID,900,,.24,.17,.5\n"
+        for form in ("CWELD,50,50,,PARTPAT\n,1,2\n,.24,.17,.3\n", place + "CWELD,50,50,900,PARTPAT\n,1,2\n",
+                     place + "CWELD,50,50,900,ELPAT\n,112,212\n", "CWELD,50,50,,ELEMID\n,112,212\n,.24,.17,.3\n",
+                     "CWELD,50,50,,GRIDID,,,QQ\n,112,113,123,122\n,212,213,223,222\n,.24,.17,.3\n"):
+            found = self.static(head + grids + shells + temperatures + form + "MAT1,9,2.+8,,.3\nMATT1,9,31\nTABLEM1,31\n"
+                                ",0.,4.+8,100.,2.+8,ENDT\nENDDATA\n")
+            expected = self.static(head + grids + shells + temperatures + form + f"MAT1,9,{write_real(4e8 - 2e6 * T)},,.3\nENDDATA\n",
+                                   "e")
+            with self.subTest(form):
+                self.same(found, expected, 1e-10)
+
+    def test_materials_are_named_by_their_ids(self):
+        """Messages of a material at a temperature name the card of the deck, and not the copy."""
+        tables = write_materials(NOMINAL) + TABLES.replace(",0.,8.+10,100.,6.+10,ENDT", ",0.,8.+10,50.,-6.+10,ENDT")
+        self.write("d.bdf", make(101, "LOAD = 5\nTEMPERATURE(MATERIAL) = 6", tables, "TEMPD,6,60.\n"))
+        self.fails(1, "static", "d.bdf", error="fe.bad-material", says=["MAT1 1 at temperature 60 has E = "])
+
     def test_rejected_input(self):
         tables = write_materials(NOMINAL) + TABLES
         case = "LOAD = 5\nTEMPERATURE(MATERIAL) = 6"
@@ -210,6 +273,12 @@ class MaterialTemperatures(ProgramTest):
             more = "TEMPD,6,60.\n" if error == "fe.missing-material-table" else ""
             self.write("d.bdf", make(101, case, cards, more))
             self.fails(1, "static", "d.bdf", error=error, says=says)
+        for old, new, says in [("MATT8,8,", "MATT8,1,", ["MATT8 1 refers to MAT8 1, but material 1 is a MAT1", "write MATT1"]),
+                               ("MATT9,9,", "MATT9,8,", ["MATT9 8", "is a MAT8"]),
+                               ("MATT2,2,", "MATT2,9,", ["MATT2 9", "is a MAT9"]),
+                               ("MATT1,1,", "MATT1,77,", ["MATT1 77 refers to MAT1 77, which the deck does not define"])]:
+            self.write("d.bdf", make(101, case, tables.replace(old, new), "TEMPD,6,60.\n"))
+            self.fails(1, "static", "d.bdf", error="fe.missing-material", says=[*says, "d.bdf:"])
         self.write("d.bdf", make(101, case, tables, "TEMP,6,1,60.\n"))
         self.fails(1, "static", "d.bdf", error="fe.missing-temperature", says=["at which its material is evaluated"])
         self.write("d.bdf", make(101, "LOAD = 5", tables, "TEMPD,6,60.\n"))

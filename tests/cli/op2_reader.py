@@ -3,8 +3,8 @@ import struct
 from collections import namedtuple
 
 Record = namedtuple("Record", "ident data")
-WIDTHS = {1: 3, 2: 100, 3: 3, 10: 3, 11: 2, 12: 2, 13: 2, 14: 2, 33: 9, 34: 9, 74: 9, 102: 7}
-COMPLEX_WIDTHS = {1: 5, 2: 177, 3: 5, 10: 5, 11: 3, 12: 3, 13: 3, 14: 3, 33: 17, 34: 17, 74: 17, 102: 13}
+WIDTHS = {1: 3, 2: 100, 3: 3, 10: 3, 11: 2, 12: 2, 13: 2, 14: 2, 33: 9, 34: 9, 74: 9, 102: 7, 117: 9, 126: 7}
+COMPLEX_WIDTHS = {1: 5, 2: 177, 3: 5, 10: 5, 11: 3, 12: 3, 13: 3, 14: 3, 33: 17, 34: 17, 74: 17, 102: 13, 117: 17, 126: 13}
 
 
 class Op2:
@@ -83,7 +83,7 @@ class Op2:
             # Behind column 67 of SUBTITLE stand the adaptivity index and the superelement.
             assert len(texts[1]) <= 67, texts[1]
             # A record is all of its table, element type, subcase and step: readers make room once.
-            kind = words[2] if words[1] % 1000 in (4, 5) else 0
+            kind = words[2] if words[1] % 1000 in (4, 5, 26, 27, 28) else 0
             key = (*words[:2], kind, *words[3:5])
             assert key not in seen, f"{name} has two records of {key}"
             seen.add(key)
@@ -114,9 +114,21 @@ class Op2:
                           rows))
         return found
 
-    def list_stresses(self):
-        """(table, words of its ident, data) of each record of stresses of elements."""
-        return [(table, ident[0], data) for table in ("OES1", "OES1C") for ident, data in self.tables.get(table, [])]
+    def list_stresses(self, tables=("OES1", "OES1C")):
+        """(table, words of its ident, data) of each record of stresses (OSTR1, OSTR1C: strains) of elements."""
+        return [(table, ident[0], data) for table in tables for ident, data in self.tables.get(table, [])]
+
+    def grid_stresses(self):
+        """(table code, subcase, surface or volume) -> rows of OGS1, ids of grids in place of device words."""
+        found = {}
+        for ident, data in self.tables.get("OGS1", []):
+            words = ident[0]
+            form = {26: "<2i4s8f", 27: "<i8f", 28: "<i14f"}[words[1]]
+            assert struct.calcsize(form) == 4 * words[9] and len(data) % (4 * words[9]) == 0 and words[8] == 1, words[:14]
+            rows = [struct.unpack_from(form, data, at) for at in range(0, len(data), 4 * words[9])]
+            assert all(row[0] % 10 == words[0] % 10 for row in rows)
+            found[words[1], words[3], words[2]] = [(row[0] // 10, *row[1:]) for row in rows]
+        return found
 
     def random_curves(self, name):
         """SORT2: {(table code, subcase, point): (type, frequencies or lags, values)} of real random results."""

@@ -124,6 +124,33 @@ class ReferenceOrbit(ProgramTest):
         np.testing.assert_allclose(A[3:, 3:] / n, expected[3:, 3:] / n, atol=1e-8)
         np.testing.assert_allclose(A[3:, :3] / n**2, expected[3:, :3] / n**2, atol=1e-6)
 
+    def test_distances_on_the_frame_keep_their_digits(self):
+        """An arm and a strut on a hub in orbit: relative positions, the stiffness and its uncertainty are as on ground,
+        where differences of inertial positions left eight digits, and the strut was without effect."""
+        earth = table("force", "earth", "gravity_central", mu=MU)
+        orbit = table("orbit", "o", planet="earth", semi_major_axis=7.0e6, inclination_deg=63.0)
+        found = {}
+        for name, parent, more in (("ground", "ground", ""), ("orbit", "lvlh:o", earth + orbit)):
+            self.write(f"{name}.toml", toml(
+                section("parameters", ks=400.0),
+                table("body", "hub", mass=30.0, inertia=[4.0, 3.5, 5.0], nodes=[{"id": 2, "position": [0.3, -0.6, -0.4]}]),
+                table("body", "arm", mass=2.0, inertia=[1.0, 0.2, 1.1], cg=[0.0, 1.0, 0.0], nodes=[{"id": 1, "position": [0.0, 2.0, 0.0]}]),
+                more, table("hinge", "base", "fixed", parent=parent, child="hub"),
+                table("hinge", "root", "revolute", parent="hub", child="arm", axis=[1.0, 0.0, 0.0]),
+                table("force", "strut", "spring", body="hub", node=2, to_body="arm", to_node=1, stiffness="$ks",
+                      free_length=math.hypot(0.3, 2.6, 0.4)),
+                table("sensor", "rel", "position", body="arm", node=1, relative_to="hub:2", frame="hub"),
+                table("sensor", "gap", "distance", body="arm", node=1, to_body="hub", to_node=2),
+                section("simulation", duration=1.0)))
+            self.bough("linearize", f"{name}.toml", "-o", f"{name}.h5", "-q", "--uncertain", "ks=300:500")
+            with h5py.File(self.path(f"{name}.h5")) as f:
+                found[name] = {key: f[key][()] for key in ("A", "C")}
+                self.assertEqual(list(f["uncertainty/size"][()]), [1])
+        np.testing.assert_allclose(found["orbit"]["C"][-4:], found["ground"]["C"][-4:], rtol=0, atol=1e-11)
+        self.assertAlmostEqual(found["orbit"]["C"][-2, 0], 2.0, delta=1e-11)
+        rate = MU / 7.0e6**3  # gravity gradient and the turning frame
+        np.testing.assert_allclose(found["orbit"]["A"], found["ground"]["A"], rtol=0, atol=10 * rate)
+
     def test_units_are_converted_and_the_motion_stays(self):
         _, relative = self.make_hinges(np.array([10.0, 20.0, 30.0]), np.zeros(3), np.eye(3), np.zeros(3))
         degrees = {**{k: v for k, v in ELEMENTS.items() if k != "inclination"}, "inclination_deg": math.degrees(0.9)}

@@ -50,6 +50,7 @@ ARMS = toml(
     table("sensor", "gyro", "gyro", body="lower", node=1, rotation_deg=[0.0, 0.0, 30.0]),
     table("sensor", "bend", "hinge_angle", hinge="elbow"),
     table("sensor", "span", "distance", body="lower", node=1, target=[0.0, 0.0, 1.0]),
+    table("event", "the distance to the upper fixed point passes one metre", time=0.4, action="log"),
     section("simulation", duration=2.0, output_step=0.005, gravity=[0.0, 0.0, -9.81]))
 
 
@@ -270,6 +271,21 @@ class Page(BrowserTest):
                 np.testing.assert_allclose(turning, 0, atol=1e-4)
                 shoulder = found["shoulder", False]
                 np.testing.assert_allclose(shoulder[0] - elbow[0] + pull, 1.5 * (a["upper"][k] - gravity), atol=1e-4)
+                # The picture of the whole has the heads of the arrows, and the ends of the axes.
+                tips = b.run("""(() => { const v = document.querySelector('[data-view=motion]').view, { viewer } = v, tips = v.marks.list_tips(v.get_places(), v.time, viewer.extent);
+                  return [...tips, 0, 0, v.viewer.extent / 10].reduce((rows, x, i) => (i % 3 ? rows[rows.length - 1].push(x) : rows.push([x]), rows), [])
+                    .map((p) => viewer.find_place(p)).map(([x, y]) => [x / viewer.canvas.clientWidth, y / viewer.canvas.clientHeight]); })()""")
+                self.assertTrue(np.all((np.array(tips) > 0) & (np.array(tips) < 1)), tips)
+        # Labels of events are above the curves, none is cut.
+        labels = b.run("""(() => { const { charts } = document.querySelector('.live[data-view=history]').view, chart = charts[0], g = chart.canvas.getContext('2d');
+          return [chart.frame.top, chart.place_mark_labels(g).map(([text, x]) => [text, x + g.measureText(text).width <= chart.frame.left + chart.frame.width])]; })()""")
+        with h5py.File(self.path("run.h5")) as f:
+            self.assertGreater(len(f["events/time"]), 0)
+        self.assertGreaterEqual(labels[0], 23)
+        self.assertTrue(labels[1] and all(fits for _, fits in labels[1]), labels)
+        b.show(".plots .chart")
+        self.picture("event-labels")
+        b.show(".motion")
         legend = b.run("document.querySelector('.motion').textContent")
         for word in ("an arrow of length 1 [L] is", "Moment (two heads)", "shoulder", "sensors: "):
             self.assertIn(word, legend)
@@ -489,6 +505,45 @@ class Page(BrowserTest):
             self.assertGreater(min(times), 0)
             b.click(".plots .tools button[title^='Reset']")
         self.picture("long")
+        self.check_sound()
+
+    def test_a_thinned_run(self):
+        """Samples that are left out: peaks stay in the curves, the table is of all samples, no spectrum is drawn from the
+        others, and the CSV has samples of the file at their times."""
+        write_results(self.path("long.h5"), 120000, [f"s{k}" for k in range(10)])
+        with h5py.File(self.path("long.h5"), "r+") as f:
+            f["sensors/s0"][77777] = 9.0
+            t, y = f["time"][:], f["sensors/s0"][:]
+        b = self.open_built("long.h5")
+        drawn = b.run("Array.from(document.querySelector('.live[data-view=history]').view.charts[0].series[0].y)")
+        self.assertAlmostEqual(max(drawn), 9, places=5)
+        cells = b.run("[...document.querySelectorAll('.statistics tbody tr')][0].textContent && "
+                      "[...document.querySelector('.statistics tbody tr').cells].map((c) => c.textContent.replace('\u2212', '-'))")
+        np.testing.assert_allclose([float(c) for c in cells[2:]], [y.min(), y.max(), np.ptp(y), y.mean(), np.sqrt((y**2).mean()), len(y)],
+                                   rtol=1e-5, atol=1e-6)
+        self.assertIn("from all samples", b.run("document.querySelector('.statistics caption').textContent"))
+        b.click(".plots .tools label:nth-child(2) input")
+        notes = b.run("[...document.querySelectorAll('.no-spectrum')].map((p) => p.textContent)")
+        self.assertEqual(len(notes), 10)
+        self.assertIn("--sensor s0 --spectrum", notes[0])
+        self.assertFalse(b.run("[...document.querySelectorAll('.plots h4')].some((h) => h.textContent.startsWith('spectrum'))"))
+        b.run("document.querySelector('.no-spectrum').scrollIntoView({ block: 'center' })")
+        self.picture("thinned")
+        b.run("(() => { window.saved = []; const make = URL.createObjectURL.bind(URL);"
+              " URL.createObjectURL = (blob) => { saved.push(blob); return make(blob); }; })()")
+        b.click(".plots .tools button[title^='Save the samples']")
+        lines = b.run("saved[0].text()").splitlines()
+        self.assertEqual(lines[0].split(",")[:2], ["time", "s0 [L]"] if "[" in lines[0] else ["time", "s0"])
+        rows = [line.split(",") for line in lines[1:]]
+        times, values = np.array([[float(r[0]), float(r[1])] for r in rows if r[1]]).T
+        at = np.rint(times / t[1]).astype(int)
+        np.testing.assert_allclose(times, t[at], rtol=1e-12)
+        np.testing.assert_allclose(values, y[at], atol=1e-6)
+        self.assertIn(77777, at)
+        # A window: extremes of its samples, no means.
+        box = b.show(".plots .chart .overlay")
+        b.drag((box["x"] + 200, box["y"] + 100), (box["x"] + 600, box["y"] + 102))
+        self.assertIn("need samples that the page does not have", b.run("document.querySelector('.statistics caption').textContent"))
         self.check_sound()
 
     def test_a_batch_of_changes_counts_by_its_last(self):

@@ -70,6 +70,14 @@ def unpack(column, count):
     return np.where(codes == MISSING, np.nan, 2 * (column["low"] / 2 + codes * (column["step"] / 2)))
 
 
+def unpack_extremes(extremes):
+    """Index and value of each sample that a thinned column keeps: differences in base 64 (report/pack.hpp)."""
+    digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"
+    codes = np.array([digits.index(c) for c in extremes["at"]]).reshape(-1, extremes["digits"])
+    at = np.cumsum(codes @ 64**np.arange(extremes["digits"])[::-1])
+    return at, unpack(extremes, len(at))
+
+
 def write_results(path, samples, names, values=None, completed=1, extra=()):
     """A results file as docs/formats/results.md has it."""
     generator = np.random.default_rng(3)
@@ -162,6 +170,28 @@ class Report(ProgramTest):
         self.assertEqual(health["deflection of body boom to its size"][0], "ok")
         # Without a script: one picture of each sensor, energies, and nothing empty.
         self.assertGreaterEqual(sum(tag == "svg" for tag, _ in page.elements), 5)
+
+    def test_largest_deflection_is_that_of_all_samples(self):
+        """One sample of 2,001 is the largest: the headline and the health have it, with its time."""
+        self.make_boom()
+        self.bough("run", "spinup.toml", "-o", "spinup.h5")
+        with h5py.File(self.path("boom.h5")) as f:
+            phi = f["modes/phi"][:, :3]
+        for sample in (803, 1998):
+            with h5py.File(self.path("spinup.h5"), "r+") as f:
+                self.assertEqual(len(f["time"]), 2001)
+                eta = f["bodies/boom/eta"]
+                eta[sample] = 3 * np.abs(eta[:]).max(axis=0) * [1, -1, 1]
+                sizes = np.linalg.norm(np.einsum("nim,tm->tni", phi, eta[:]), axis=2).max(axis=1)
+                self.assertEqual(sizes.argmax(), sample)
+                time = f["time"][sample]
+            health = {r[1]: r for r in self.report("spinup.h5").get_table("Health")}
+            note = health["deflection of body boom to its size"][3]
+            with open(self.path("page.html"), encoding="utf-8") as f:
+                headline = re.search(r"<dt>largest deflection</dt><dd>([\d.]+) .*?at t = ([\d.]+)", f.read())
+            for found, at in (re.match(r"([\d.]+) of .* at t = ([\d.]+)", note).groups(), headline.groups()):
+                self.assertAlmostEqual(float(found), sizes.max(), delta=1e-3 * sizes.max())
+                self.assertAlmostEqual(float(at), time, delta=1e-3 * time)
 
     def test_another_body_file_is_not_drawn(self):
         self.make_boom()
@@ -357,6 +387,17 @@ class Report(ProgramTest):
                 degrees = np.frombuffer(base64.b64decode(pair["degrees"]), "<f8")
                 np.testing.assert_allclose(np.exp(1j * np.radians(degrees[drawn])), H[drawn] / np.abs(H[drawn]), atol=1e-7)
             self.assertEqual(len(page.get_table("Poles")) - 1, len(A))
+            poles = np.linalg.eigvals(A)
+        with open(self.path("page.html"), encoding="utf-8") as f:
+            text = f.read()
+        headlines = dict(re.findall(r"<dt>([^<]*)</dt><dd>([^<]*)</dd>", text))
+        self.assertIn("largest gain", headlines)
+        frequency = re.search(r"<dt>smallest damping ratio</dt><dd>[^<]*</dd><dd class=.note.>at ([\d.]+) Hz", text)[1]
+        self.assertAlmostEqual(float(frequency), np.abs(poles).min() / (2 * np.pi), delta=1e-4)
+        damping = 100 * (-poles.real / np.abs(poles)).min()
+        self.assertAlmostEqual(float(headlines["smallest damping ratio"].split()[0]), damping, delta=1e-2)
+        # Lines of constant frequency have numbers.
+        self.assertRegex(text, "\u03c9 [\\d.]+</text>")
 
     def test_comparison_selection_campaign(self):
         self.make_boom()
@@ -405,7 +446,22 @@ class Report(ProgramTest):
         stride = page.get_data()[0]["channels"][0]["stride"]
         self.assertGreater(stride, 1)
         with open(self.path("page.html")) as f:
-            self.assertIn(f"the curves hold 1 of {stride} samples", f.read())
+            self.assertIn(f"the curves hold the smallest and the largest of each {2 * stride} samples of sensors", f.read())
+        # Each is a sample of the file at its time; none of these samples is beyond them.
+        with h5py.File(self.path("long.h5")) as f:
+            for channel in page.get_data()[0]["channels"][:5]:
+                whole, extremes = f[channel["path"]][:], channel["columns"][0]["extremes"]
+                at, values = unpack_extremes(extremes)
+                self.assertEqual((at[0], at[-1]), (0, len(whole) - 1))
+                self.assertTrue(np.all(np.diff(at) > 0))
+                np.testing.assert_allclose(values, whole[at], atol=0.51 * extremes["step"])
+                for begin in range(0, len(whole), 2 * stride):
+                    own = values[(at >= begin) & (at < begin + 2 * stride)]
+                    part = whole[begin:begin + 2 * stride]
+                    self.assertAlmostEqual(own.min(), part.min(), delta=0.51 * extremes["step"])
+                    self.assertAlmostEqual(own.max(), part.max(), delta=0.51 * extremes["step"])
+                self.assertAlmostEqual(extremes["mean"], whole.mean(), delta=1e-12)
+                self.assertAlmostEqual(extremes["rms"], np.sqrt((whole**2).mean()), delta=1e-12)
         one = self.report("long.h5", "--channel", "s7")
         self.assertEqual([(c["path"], c["stride"]) for c in one.get_data()[0]["channels"]], [("/sensors/s7", 1)])
         self.fails(1, "report", "long.h5", "--channel", "s77", error="cli.unknown-channel")

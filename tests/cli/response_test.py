@@ -46,6 +46,47 @@ class Response(LinearTest):
         with h5py.File(self.path(name)) as f:
             return {key: f[key][()] for key in ["frequency_hz", "real", "imag", "singular_values"]}
 
+    def test_margins_next_to_a_pole_on_the_axis(self):
+        """A pole of damping 1e-8, of either sign, is one of a damping of rounding: no gain margin of -150 dB in its
+        resonance, the phase margins of an undamped plant, and the pole is named."""
+        self.write("axis.toml", AXIS.replace("[[sensor]]", "stiffness = [50.0]\n\n[[sensor]]", 1))
+        self.bough("linearize", "axis.toml", "--break", "drive", "-o", "loop.h5")
+        exact = json.loads(self.bough("response", "loop.h5", "--json").stdout)["margins"]
+        # L = (kp + kd s) / (2 s² + 50): |L| = 1 at ω⁴ 4 - (200 + kd²) ω² + 2500 - kp² = 0.
+        omega = np.sqrt(np.roots([4, -(200 + 1.6**2), 2500 - 64]).real)
+        np.testing.assert_allclose(sorted(c["frequency_hz"] for c in exact["phase"]), sorted(omega / (2 * np.pi)), rtol=1e-6)
+        with h5py.File(self.path("loop.h5")) as f:
+            A, real = f["A"][:], f["poles/real"][:]
+        np.testing.assert_allclose(np.abs(np.linalg.eigvals(A)), 5, rtol=1e-6)
+        for shift in (7e-8, -2e-7):
+            with h5py.File(self.path("loop.h5"), "r+") as f:
+                f["A"][:] = A + shift * np.eye(2)
+                f["poles/real"][:] = real + shift
+            margins = json.loads(self.bough("response", "loop.h5", "--json").stdout)["margins"]
+            self.assertEqual(margins["gain"], [])
+            self.assertTrue(margins["stable"])
+            np.testing.assert_allclose([[c["frequency_hz"], c["degrees"]] for c in margins["phase"]],
+                                       [[c["frequency_hz"], c["degrees"]] for c in exact["phase"]], rtol=1e-5)
+            if shift > 0:
+                self.assertIn("the poles ± 5 i are on the imaginary axis", self.bough("response", "loop.h5").stdout)
+            self.bough("report", "loop.h5", "-o", "page.html")
+            with open(self.path("page.html"), encoding="utf-8") as f:
+                page = f.read()
+            self.assertIn("poles on the imaginary axis, damping below 1e-7", page)
+            self.assertRegex(page, r"poles in the right half plane</td><td[^>]*>0<")
+
+    def test_bode_in_the_terminal(self):
+        """Both diagrams have the name of their axis, the phase has labels at multiples of 45 degrees."""
+        self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.0"))
+        self.bough("linearize", "pendulum.toml", "--outputs", "angle", "-o", "linear.h5")
+        text = self.bough("plot", "linear.h5", "--kind", "bode", "--term", env={"COLUMNS": "80"}).stdout
+        magnitude, phase = text.split("phase [degrees]\n")
+        self.assertIn("magnitude [dB]", magnitude.splitlines()[0])
+        labels = [float(m) for m in re.findall(r"(?m)^ *(-?[\d.]+)\u2524", phase)]
+        self.assertGreater(len(labels), 3)
+        self.assertTrue(all(v % 45 == 0 for v in labels), labels)
+        self.assertEqual(len(set(np.diff(labels))), 1, labels)
+
     def test_of_a_flexible_hub_is_scipys(self):
         self.make_boom(6)
         self.write_hub("hub.toml", eta="damping = 0.01")

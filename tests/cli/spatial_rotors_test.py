@@ -110,11 +110,11 @@ class SpatialRotors(ProgramTest):
                 rotor = self.result["rotors"]["rotors"][0]
                 self.assertAlmostEqual(rotor["polar_inertia"], polar, delta=relative * polar)
 
-    def make_ring(self):
+    def make_ring(self, between=(0.1, 0.15)):
         """A stiff ring of shells about grid 5000: mesh, bulk data, polar and diametral inertia of the polygons."""
         n, inner, R, t, rho = 16, 0.05, 0.2, 0.02, 7800.0
         mesh = Mesh()
-        add_disc(mesh, [inner, 0.1, 0.15, R], n)
+        add_disc(mesh, [inner, *between, R], n)
         hub = [mesh.grid(*place(inner, 2 * math.pi * k / n, 0)) for k in range(n)]
         mesh.lines.append("GRID,5000,,0.,0.,0.\nRBE2,5001,5000,123456," + ",".join(map(str, hub[:5])) + "\n," +
                           ",".join(map(str, hub[5:13])) + "\n," + ",".join(map(str, hub[13:])))
@@ -310,7 +310,7 @@ class SpatialRotors(ProgramTest):
 
     def test_preload(self):
         """STATSUB with RFORCE: in place of it the stress at each speed, if ROTORD names it; else it would count twice."""
-        mesh, bulk, *_ = self.make_ring()
+        mesh, bulk, *_ = self.make_ring(between=())
         bulk = [*bulk, "SPC1,1,1236,5000", "CELAS2,9001,4.+5,5000,4", "CELAS2,9002,4.+5,5000,5", "RFORCE,21,5000,,50.,0.,0.,1."]
         plain = self.frequencies(make_deck(mesh, ["RMETHOD = 9"], [*bulk, *rotord(300.0, 1.0, 1, "ROT")]))
         make = lambda rforce: make_deck(mesh, ["SUBCASE 1", "LOAD = 21", "SUBCASE 2", "STATSUB = 1", "RMETHOD = 9"],

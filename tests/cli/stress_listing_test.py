@@ -10,17 +10,18 @@ from support import ProgramTest
 
 HEAD = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\n{case}BEGIN BULK\nMAT1,1,7.+10,,.3,2700.\n,300.+6,200.+6,90.+6\n"
 # Words of an element after its id, by type: published widths less one.
-WIDTHS = {1: 5, 2: 111, 3: 5, 10: 5, 33: 17, 34: 16, 39: 109, 67: 193, 68: 151, 74: 17, 95: 11, 97: 11}
+WIDTHS = {1: 5, 2: 111, 3: 5, 10: 5, 33: 17, 34: 16, 39: 109, 67: 193, 68: 151, 74: 17, 95: 11, 97: 11,
+          102: 7}
 
 
-def read_stresses(op2):
+def read_stresses(op2, tables=("OES1", "OES1C")):
     """(type, element) -> words after the id; of plies a list by layer, of solids {grid or 0: 20 numbers}."""
     found = {}
-    for table, words, data in op2.list_stresses():
+    for table, words, data in op2.list_stresses(tables):
         kind, wide = words[2], words[9]
         assert words[1] == 5 and words[8] == 1 and wide == WIDTHS[kind], words[:12]
-        assert (words[10] == 0) == (kind in (95, 97))
-        assert (table == "OES1C") == (kind in (95, 97))
+        assert (words[10] % 2 == 0) == (kind in (95, 97)) and (words[10] >= 10) == table.startswith("OSTR")
+        assert table.endswith("C") == (kind in (95, 97))
         assert len(data) % (4 * wide) == 0
         for at in range(0, len(data), 4 * wide):
             (device,) = struct.unpack_from("<i", data, at)

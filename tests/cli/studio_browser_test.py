@@ -1,5 +1,6 @@
 """bough studio in headless Chromium by mouse and keys: from a deck to a body, a system, a run, poles and a page; the
 files written give the same numbers by the command line. Skipped, with a message, where chromium is not installed."""
+import json
 import os
 import re
 import shutil
@@ -61,7 +62,13 @@ class Flow(PageTest):
         page.type("6")
         page.click("button.make-body")
         self.wait("document.querySelector('dialog pre.diff')")
-        self.assertIn("+[body]", page.run("document.querySelector('dialog pre.diff').textContent"))
+        shown = page.run("document.querySelector('dialog pre.diff').textContent")
+        self.assertIn("+[body]", shown)
+        self.assertIn("@@ -0,0 +1,", shown)
+        # The list that was chosen replaces the one to be filled in; the number of modes is no longer that of the deck.
+        self.assertEqual(len(re.findall("interface = ", shown)), 1)
+        self.assertNotRegex(shown, "number = 6 +#")
+        self.assertEqual(page.run("(() => { const d = document.querySelector('dialog'); return d.scrollHeight - d.clientHeight; })()"), 0)
         self.assertFalse(os.path.exists(self.path(stem + ".toml")))
         self.keep("studio-save")
         self.click_text("Save", "document.querySelector('dialog')")
@@ -113,6 +120,9 @@ class Flow(PageTest):
         self.assertGreater(page.run(COLORS), 10)
         page.show(".result [data-panel=histories]")
         self.wait("document.querySelector('.result .chart canvas')")
+        widths = page.run("[...document.querySelectorAll('.result .history .stage, .result [data-panel=histories]')].map((e) => e.clientWidth)")
+        self.assertGreater(min(widths), 0.85 * max(widths))  # of the panel
+        self.keep("studio-curves")
         page.show(".scene-host canvas")
         self.keep("studio-run")
 
@@ -125,6 +135,12 @@ class Flow(PageTest):
         self.wait("studio.view.poles && studio.view.poles.chart.frame")
         self.keep("studio-poles")
         poles = page.run("[studio.view.poles.poles.real, studio.view.poles.poles.imag]")
+        # The page has what is on the screen: the run and the poles.
+        before = page.run(f"studio.find('{stem}-run.html').time")
+        page.click("button.save-page")
+        self.wait(f"studio.find('{stem}-run.html').time !== {json.dumps(before)}")
+        self.assertIn('data-view="poles"', self.read(stem + "-run.html"))
+        self.assertIn('data-view="motion"', self.read(stem + "-run.html"))
         self.check_page(page)
         self.assertTrue(all(url.startswith((self.address, "blob:", "data:")) or url.endswith("favicon.ico") for url in page.list_requests()))
 
@@ -159,6 +175,13 @@ class Flow(PageTest):
         self.wait("document.querySelector('.scene-host').dataset.pole === '0'")
         self.assertTrue(page.run("studio.view.motion.is_playing"))
         self.assertIn("Hz", page.run("document.querySelector('.work-column .picked').textContent"))
+        chosen = "document.querySelector('.pole-picker').selectedOptions[0].textContent"
+        self.assertEqual(page.run(chosen), page.run("document.querySelector('.work-column .picked').textContent").replace("shape of the pole ", ""))
+        # "no pole" ends the motion: the system at its start.
+        self.choose("move in the shape of", "no pole")
+        self.wait("document.querySelector('.scene-host').dataset.pole === undefined && !studio.view.motion.is_playing")
+        self.click_at(x, y)
+        self.wait("document.querySelector('.scene-host').dataset.pole === '0'")
         # It goes round and does not end.
         self.wait("(() => { const m = studio.view.motion; m.set_time(m.last); return m.is_playing; })()")
         self.choose("move in the shape of", "1.27")
@@ -175,6 +198,17 @@ class Flow(PageTest):
             np.testing.assert_allclose(page.run("studio.view.poles.poles.imag"), f["/poles/imag"][:], rtol=1e-12)
             shown = page.run("[...studio.view.poles.picker.list.options].slice(1).map((o) => parseFloat(o.textContent))")
             np.testing.assert_allclose(shown, f["/poles/frequency_hz"][:][f["/poles/imag"][:] >= 0], rtol=1e-4)
+        # Above the table: its poles are those of the file. A click on a pole of now takes it, though one of then is below.
+        self.assertIn(f"not with gain={gain:g}".rstrip("0"), page.run("document.querySelector('[data-panel=poles] .stale').textContent"))
+        page.run("studio.view.poles.chart.element.scrollIntoView({ block: 'center' })")
+        for k in range(4):
+            at = page.run(f"""(() => {{ const {{ chart, poles }} = studio.view.poles, b = chart.overlay.getBoundingClientRect();
+              return [b.x + chart.map_x(poles.x[{k}]), b.y + chart.map_y(poles.y[{k}])]; }})()""")
+            self.click_at(*at)
+            index = page.run(f"studio.view.poles.poles.index[{k}]")
+            self.wait(f"document.querySelector('.scene-host').dataset.pole === '{index}'")
+            tip = page.run("document.querySelector('[data-view=poles] .tip').textContent")
+            self.assertTrue(tip.startswith(page.run(f"studio.view.poles.poles.frequency[{k}].toPrecision(5).replace(/0+$/, '')")), tip)
         # The last of two requests wins, though the answer to the first comes later.
         page.run("""(async () => { const send = fetch; let count = 0;
           window.fetch = (u, o) => (o.body.includes("pole-motion") && count++ === 0 ? new Promise((r) => setTimeout(r, 3000)).then(() => send(u, o)) : send(u, o));

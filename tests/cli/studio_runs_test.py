@@ -106,6 +106,11 @@ class Runs(PageTest):
         self.wait("document.querySelector('.result').dataset.ready === 'true' && !studio.view.is_following")
         self.assertFalse(page.run("[...document.querySelectorAll('.actions button')].some((b) => b.disabled)"))
         self.assertFalse(page.run("document.querySelector('.progress details').open"))
+        # The bar stays where it was, and the scene at the last sample.
+        self.assertLess(page.run("document.querySelector('.progress progress').value"), 100)
+        self.assertTrue(page.run("document.querySelector('.progress-line').textContent.startsWith('stopped')"))
+        self.assertGreater(page.run("studio.view.motion.last"), 0)
+        self.assertEqual(page.run("studio.view.motion.time"), page.run("studio.view.motion.last"))
 
 
 if __name__ == "__main__":

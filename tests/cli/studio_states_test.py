@@ -1,6 +1,7 @@
 """The page of the studio after a failed run, a change outside, and with files of odd names."""
 import json
 import os
+import subprocess
 import tomllib
 import unittest
 
@@ -10,6 +11,7 @@ from browser import WAIT_FRAMES, Browser
 from studio_browser_test import PROJECT, make_plate
 from studio_control_test import SYSTEM
 from studio_page import PageTest
+from support import PROGRAM
 
 
 class Decks(PageTest):
@@ -144,15 +146,20 @@ class Decks(PageTest):
         self.click_text("Save", "document.querySelector('dialog')")
         self.wait("document.querySelector('main.work').dataset.file === '-dash.toml'")
         self.assertTrue(page.run("document.activeElement.classList.contains('file-title')"))
+        # The number of modes is that of the deck, as no other was chosen.
+        self.assertRegex(self.read("-dash.toml"), r"number = 4 +# as EIGRL 1 of the deck")
+        page.click("button.reduce")
+        self.wait("document.querySelector('.result').dataset.ready === 'true'")
         self.click_text("Copy commands")
         self.wait("document.querySelector('dialog textarea')")
-        lines = page.run("document.querySelector('dialog textarea').value").splitlines()
-        os.remove(self.path("-dash.toml"))
-        os.remove(self.path("-dash-run.toml"))
-        for line in lines:
-            if line.startswith("bough "):
-                self.bough(*line.split()[1:])
-        self.assertTrue(os.path.exists(self.path("-dash.toml")))
+        text = page.run("document.querySelector('dialog textarea').value")
+        # The lines do the same in the folder: none stops, none takes an edit away.
+        before = self.read("-dash.toml")
+        os.remove(self.path("-dash.h5"))
+        script = text.replace("bough ", PROGRAM + " ")
+        subprocess.run(["sh", "-e", "-c", script], cwd=self.folder, check=True, capture_output=True)
+        self.assertTrue(os.path.exists(self.path("-dash.h5")))
+        self.assertEqual(self.read("-dash.toml"), before)
 
 
 class Systems(PageTest):
@@ -189,7 +196,13 @@ class Systems(PageTest):
         page.run("""(() => { const field = document.querySelector('[aria-label="parameter gain"]');
           field.value = "7"; field.dispatchEvent(new Event("change")); })()""")
         self.assertEqual(page.run("studio.view.list_set()"), ["gain=7"])
+        # The message of a failure goes when a later action succeeds.
+        page.click("input.command")
+        page.type("set nothing.x=1\n")
+        self.wait("document.querySelector('.toast.bad')")
+        page.run("document.querySelector('input.command').value = ''")
         self.command("set pid.kp=5.0")
+        self.wait("!document.querySelector('.toast.bad')")
         self.command("unset parameters.gain")
         self.wait("studio.view.set.size === 0")
 
@@ -208,7 +221,7 @@ class Systems(PageTest):
         self.keep("studio-found-run")
         self.assertFalse(page.run("document.querySelector('.progress button').hidden"))
         self.click_text("Stop")
-        self.wait("document.querySelector('.progress-line').textContent.startsWith('ended with code 3: bough run sliders.toml')")
+        self.wait("document.querySelector('.progress-line').textContent.startsWith('stopped: bough run sliders.toml')")
         self.wait("document.querySelector('.result').dataset.ready === 'true'")
         self.wait("document.querySelector('.jobs').childElementCount === 0")
         self.assertEqual(self.call("jobs")["result"]["jobs"], [])
@@ -235,7 +248,7 @@ class Systems(PageTest):
         self.browser.visit(self.address)
         self.wait(run)
         self.click_text("Stop")
-        self.wait("document.querySelector('.progress-line').textContent.startsWith('ended with code 3')")
+        self.wait("document.querySelector('.progress-line').textContent.startsWith('stopped: ')")
         self.ask("chapter", file="sliders.h5")
 
     def test_a_reload_opens_the_file_that_was_open(self):

@@ -243,6 +243,23 @@ class Files(StudioTest):
         self.bough("report", "studio.h5", "boom.h5", "-o", "shell.html", "--title", "studio")
         self.assertEqual(self.read("page.html").replace("page", ""), self.read("shell.html").replace("page", ""))
 
+    def test_difference_of_a_new_file(self):
+        """Ranges of lines as diff -u has them."""
+        for before, after in (("", "a\nb\n"), ("a\nb\n", ""), ("a\nb\nc\n", "a\nx\nc\n")):
+            self.write("before.txt", before)
+            self.write("after.txt", after)
+            done = subprocess.run(["diff", "-u", "before.txt", "after.txt"], cwd=self.folder, text=True, capture_output=True)
+            found = self.ask("diff", file="x.toml", before=before, after=after)["diff"]
+            self.assertEqual(found.splitlines()[2:], done.stdout.splitlines()[2:])
+
+    def test_a_deck_with_a_missing_grid(self):
+        """An element that is left out of the picture is named, a spring to a scalar point is none."""
+        self.write("bad.bdf", "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nSPOINT,50\n"
+                   "CQUAD4,7,1,1,2,3,9\nCTRIA3,8,1,1,2,3\nCELAS2,5,10.,1,1,50,0\nPSHELL,1,1,.01,1\nMAT1,1,7.+10,,.3,2700.\nENDDATA\n")
+        messages = self.ask("deck", file="bad.bdf")["messages"]
+        found = [(m["id"], m["line"], m["what"]) for m in messages if m["severity"] == "error"]
+        self.assertEqual(found, [("fe.missing-grid", 8, "CQUAD4 7 is not drawn: it refers to grid 9, which the deck does not define")])
+
     def test_deck(self):
         deck = self.ask("deck", file="boom.bdf")
         self.assertEqual(sum(v for k, v in deck["cards"].items() if k == "GRID"), self.read("boom.bdf").count("\nGRID"))

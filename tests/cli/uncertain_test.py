@@ -90,6 +90,23 @@ class Uncertain(ProgramTest):
             f["/modal/damping"][1, 1] *= 1.3
         self.check("lft.h5", "changed", [to_delta(1.05**2, squares), to_delta(1.3, dampings)], "hub-2.18.toml")
 
+    def test_round_off_of_an_output_is_not_judged(self):
+        """An accelerometer across the motion, at rest to 1e-8 N, as a length with eleven digits leaves it."""
+        self.write("strut.toml", toml(
+            section("parameters", ks=400.0, mh=30.0),
+            table("body", "hub", mass="$mh", inertia=[4.0, 3.5, 5.0], nodes=[{"id": 2, "position": [0.0, 0.0, 0.5]}]),
+            table("body", "wing", mass=20.0, inertia=[20.0, 1.0, 20.0], cg=[0.0, 2.0, 0.0], nodes=[{"id": 17, "position": [0.0, 4.0, 0.0]}]),
+            table("hinge", "base", "prismatic", child="hub", axis=[0.0, 0.0, 1.0]),
+            table("hinge", "root", "revolute", parent="hub", child="wing", axis=[1.0, 0.0, 0.0]),
+            table("force", "strut", "spring", body="hub", node=2, to_body="wing", to_node=17, stiffness="$ks", free_length=4.0311288741),
+            table("sensor", "acc", "accelerometer", body="wing", node=17),
+            table("actuator", "f", "force", body="wing", node=17, axis=[1.0, 2.0, 3.0]), section("simulation", duration=1.0)))
+        self.bough("linearize", "strut.toml", "--uncertain", "ks=300:500", "--uncertain", "mh=20:45", "-o", "lft.h5")
+        self.bough("linearize", "strut.toml", "--set", "ks=450", "--set", "mh=30", "-o", "at.h5")
+        with h5py.File(self.path("lft.h5")) as f, h5py.File(self.path("at.h5")) as at:
+            for own, letter in zip(close(f, [0.5, -0.2]), "ABCD"):
+                np.testing.assert_allclose(own, at[letter][:], rtol=0, atol=1e-9 * max(1, np.abs(at[letter][:]).max()))
+
     def test_refusals(self):
         self.write("sliders.toml", SYSTEM.replace("gain = 5.0", "gain = 5.0\nrest = 1.0"))
         for bad in ["gain", "gain=4", "gain=6:4", "=1:2", "gain=a:b", "a:eta1:color=1:2", "a:eta0:stiffness=1:2",

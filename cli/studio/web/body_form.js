@@ -8,16 +8,13 @@ const kFrames = ["as the deck", "fixed", "free", "mean"];
 const kBases = ["normal", "craig-bampton", "craig-chang"];
 const kJoints = ["as the deck", "revolute hinge at the first grid"];
 
-const quote_word = (word) => (/^[\w./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
-// A name that begins with "-" would be an option.
-const quote = (file) => quote_word(file.startsWith("-") ? "./" + file : file);
 
 /** @param {(grids: number[]) => void} on_change  called with the chosen grids */
 export function make_body_form(studio, deck, on_change) {
   const grids = [];
   let frame = 0, basis = 0, joint = 0, is_picking = true;
   const list = el("output", { class: "chosen", "aria-label": "interface nodes" });
-  const number = el("input", { type: "number", min: 0, max: 1000, step: 1, value: 10, "aria-label": "number of modes" });
+  const number = el("input", { type: "number", min: 0, max: 1000, step: 1, placeholder: "of the deck", "aria-label": "number of modes" });
   const update = () => {
     list.replaceChildren(...(grids.length === 0 ? [el("span", { class: "note" }, "none: click grids, or find one by its id")] : grids.map((g) => make_button(`${g} ✕`, "Leave this grid out", () => {
       grids.splice(grids.indexOf(g), 1);
@@ -35,19 +32,22 @@ export function make_body_form(studio, deck, on_change) {
     if (grids.length > 0) commands.push(`set body.interface=[${grids.join(", ")}]`);
     if (basis > 0) commands.push(`set body.modes.basis=${kBases[basis]}`);
     if (Number(number.value) >= 0 && number.value !== "") commands.push(`set body.modes.number=${Number(number.value)}`);
-    const { text } = await ask("edit", { file: files[0].name, text: files[0].text, kind: "body", commands });
-    const line = [`bough init ${quote(deck)}${joint === 1 && grids[0] ? ` --hinge ${grids[0]}` : ""}`];
-    if (commands.length > 0) line.push(`printf '%s\\n' ${commands.map((c) => `'${c}'`).join(" ")} save | bough edit ${quote(files[0].name)}`);
-    return { body: { name: files[0].name, text }, system: files[1], line };
+    let start = files[0].text;
+    // Comments of bough init that the choices make untrue: the list to be filled in, where the number comes from.
+    if (grids.length > 0) start = start.replace(/^# interface = .*\n/m, "");
+    if (number.value !== "") start = start.replace(/^(number = \d+) +# as .*$/m, "$1");
+    const { text } = await ask("edit", { file: files[0].name, text: start, kind: "body", commands });
+    return { body: { name: files[0].name, text }, system: files[1] };
   };
   const make = () => studio.attempt(async () => {
     button.disabled = true;  // the texts take a moment
-    const { body, system, line } = await make_texts().finally(() => (button.disabled = false));
+    const { body, system } = await make_texts().finally(() => (button.disabled = false));
     const known = await ask("read", { file: body.name }).catch(() => ({ text: "", hash: "" }));
     const is_there = await ask("read", { file: system.name }).then(() => true, () => false);
     const saved = await save_text(body.name, known.text, body.text, known.hash, is_there ? [] : [{ file: system.name, text: system.text }]);
     if (!saved) return;
-    history.push(...line);
+    // bough init would not overwrite these files, and their later edits are in them: no command makes them again.
+    history.push(`# ${[body.name, ...(is_there ? [] : [system.name])].join(" and ")}: made from ${deck}, in this folder`);
     await studio.refresh();
     await studio.open(body.name);
   });

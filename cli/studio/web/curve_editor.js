@@ -3,6 +3,7 @@
 import { ask } from "./api.js";
 import { Chart } from "./chart.js";
 import { list_handles, list_texts, splice, to_text } from "./function_handles.js";
+import { label_time } from "./history.js";
 import { format_number } from "./numbers.js";
 import { el, make_button } from "./page_parts.js";
 
@@ -31,7 +32,7 @@ export class CurveEditor {
     this.take(values);
     /** Which control of the curve before has the focus, -1 for none. */
     this.focused = before ? before.list_controls().indexOf(document.activeElement) : -1;
-    this.chart = new Chart({ title: "", series: this.make_series(), x_label: of_time ? "time" : "argument", y_label: name, height: 170,
+    this.chart = new Chart({ title: "", series: this.make_series(), x_label: of_time ? (view.motion ? label_time(view.motion.run) : "time") : "argument", y_label: name, height: 170,
       on_grab: (at, event) => this.grab(at, event), on_double: (at) => this.is_table && this.add(at), on_key: (event) => this.key(event) });
     this.chart.overlay.setAttribute("aria-label", `${this.word}s of ${name}`);
     this.fields = ["x", "y"].map((axis) => {
@@ -42,7 +43,7 @@ export class CurveEditor {
     this.remove_button = make_button("delete", "Delete the chosen point (Delete)", () => this.remove());
     this.status = el("output", { class: "note", "aria-live": "polite" });
     const more = this.is_table ? [make_button("add", "Add a point after the chosen one (Insert)", () => this.insert()), this.remove_button] : [];
-    this.element = el("div", { class: "curve-editor", "data-function": name }, this.chart.element, el("div", { class: "tools" }, make_button("◀", `The ${this.word} before (p)`, () => this.step(-1)), make_button("▶", `The next ${this.word} (n)`, () => this.step(1)), ...this.fields, ...more), this.status);
+    this.element = el("div", { class: "curve-editor", "data-function": name }, this.chart.element, el("div", { class: "tools" }, make_button("◀", `The ${this.word} before (p)`, () => this.step(-1)), make_button("▶", `The next ${this.word} (n)`, () => this.step(1)), ...this.fields.map((field, k) => el("label", {}, (k > 0 ? "value" : of_time ? "time" : "argument") + " ", field)), ...more), this.status);
     this.show();
   }
 

@@ -87,9 +87,12 @@ export class DeckScene {
       } else (group_of_point.get(a) ?? group_of_point.get(b))?.edges.push(a, b);
     });
     this.groups = [...groups.values()].sort((a, b) => a.order - b.order || a.name.localeCompare(b.name));
-    this.groups.forEach((g, k) => {
+    // Groups of one property (its CQUAD4 and its CTRIA3) have one colour.
+    const styles = new Map();
+    this.groups.forEach((g) => {
       for (const key of ["triangles", "edges", "lines"]) g[key] = Uint32Array.from(g[key]);
-      g.style = k;
+      if (!styles.has(g.property || g.name)) styles.set(g.property || g.name, styles.size);
+      g.style = styles.get(g.property || g.name);
       g.solids = this.sections.make_solids(new Set(g.lines_of));
     });
   }

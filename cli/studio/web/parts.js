@@ -127,7 +127,7 @@ export async function show_history(extra = []) {
   const text = [...history, ...extra].join("\n") + "\n";
   const area = el("textarea", { rows: 10, readonly: true, "aria-label": "commands", class: "code" });
   area.value = text;
-  const note = el("p", { class: "note" }, "These lines, typed in the folder of the studio, do the same.");
+  const note = el("p", { class: "note" }, "These lines, typed in the folder of the studio with its files as they are saved now, do the same.");
   const choice = await ask_user("Commands", el("div", {}, note, area), [["copy", "Copy"], ["", "Close"]]);
   if (choice === "copy") await navigator.clipboard.writeText(text).catch(() => {});
 }
@@ -154,9 +154,12 @@ export function make_progress() {
   };
   const finish = ({ code, line: words }) => {
     stop.hidden = true;
-    bar.value = 100;
-    line.textContent = (code === 0 ? "done: " : `ended with code ${code}: `) + words;
-    fold.open = code !== 0 && !output.textContent.includes("stopped on request");
+    // Of a command that was stopped the bar stays where it was.
+    const is_stopped = code !== 0 && output.textContent.includes("stopped on request");
+    if (code === 0) bar.value = 100;
+    else if (!bar.hasAttribute("value")) bar.value = 0;
+    line.textContent = is_stopped ? `stopped: ${words}` : (code === 0 ? "done: " : `ended with code ${code}: `) + words;
+    fold.open = code !== 0 && !is_stopped;
   };
   return { element, update, finish };
 }

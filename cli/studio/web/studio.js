@@ -45,14 +45,26 @@ class Studio {
     this.work.replaceChildren(el("div", { class: "page welcome" }, el("h2", {}, "Files of this folder are on the left"), el("ol", {}, ...steps.map((s) => el("li", {}, s))), el("p", { class: "note" }, "The studio writes nothing that it has not shown, and only in this folder and below.")));
   }
 
-  /** Runs an action; its failure is shown. @returns the value of the action, false if it failed */
-  async attempt(action) {
+  /**
+   * Runs an action; its failure is shown, and stays until an action that began later succeeds.
+   * @param {boolean} [is_own]  false: no action of the user, failures stay
+   * @returns the value of the action, false if it failed
+   */
+  async attempt(action, is_own = true) {
+    const before = this.list_errors();
     try {
-      return await action();
+      const value = await action();
+      if (is_own) before.forEach((box) => box.remove());
+      return value;
     } catch (error) {
       this.show_error(error);
       return false;
     }
+  }
+
+  /** Failures that are shown. @returns {Element[]} */
+  list_errors() {
+    return [...this.notes.querySelectorAll(".toast.bad")];
   }
 
   show_error(error) {

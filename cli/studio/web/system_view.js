@@ -6,7 +6,7 @@ import { Chart } from "./chart.js";
 import { DiagramPanels } from "./diagram_view.js";
 import { HingeAxes } from "./hinge_axes.js";
 import { HingePlaces } from "./hinge_places.js";
-import { HistoryView, RunSet } from "./history.js";
+import { HistoryView, RunSet, label_time, with_unit } from "./history.js";
 import { MotionView } from "./motion_view.js";
 import { el, make_button } from "./page_parts.js";
 import { FloatingScene, make_progress, show_history } from "./parts.js";
@@ -75,17 +75,22 @@ export class SystemView {
     if (answer.tree) this.hinge_places.update(answer.tree);
     this.diagrams.update();
     if (this.is_running || has_errors || this.text_drawn === this.pane.text) return;
-    const text = this.pane.text;
+    this.bodies = (answer.bodies ?? []).map((path) => this.studio.to_name(path));
     try {
-      const { chapter } = await ask("preview", { file: this.file, text });
-      if (text !== this.pane.text) return;  // another text is checked by now
-      this.text_drawn = text;
-      this.bodies = (answer.bodies ?? []).map((path) => this.studio.to_name(path));
-      const run = new ReportChapter(chapter.data).run, list_bodies = (r) => r?.data.bodies.map((b) => b.name).join("\n");
-      this.show_scene(run, false, list_bodies(run) === list_bodies(this.motion?.run));
+      await this.show_start();
     } catch (error) {
       if (error.messages) this.pane.messages.show(error.messages);
     }
+  }
+
+  /** Draws the system of the text at its start. */
+  async show_start() {
+    const text = this.pane.text;
+    const { chapter } = await ask("preview", { file: this.file, text });
+    if (text !== this.pane.text) return;  // another text is checked by now
+    this.text_drawn = text;
+    const run = new ReportChapter(chapter.data).run, list_bodies = (r) => r?.data.bodies.map((b) => b.name).join("\n");
+    this.show_scene(run, false, list_bodies(run) === list_bodies(this.motion?.run));
   }
 
   /** Draws a run in the same viewer, its end while it grows; the camera stays if `is_kept` and there is one. */
@@ -183,7 +188,7 @@ export class SystemView {
    * @returns {Promise<boolean>}  true if there was one
    */
   async join() {
-    const found = await this.studio.attempt(() => find_job(this.file, ["run", "equilibrium", "linearize"]));
+    const found = await this.studio.attempt(() => find_job(this.file, ["run", "equilibrium", "linearize"]), false);
     if (!found || this.is_following) return Boolean(found);
     const { verb, options, before } = found.request, output = options.find(([name]) => name === "-o")[1];
     for (const [name, text] of options) if (name === "--set") this.set.set(text.slice(0, text.indexOf("=")), text.slice(text.indexOf("=") + 1));
@@ -211,22 +216,26 @@ export class SystemView {
       this.pane.messages.show(done.messages, "The run ended without a message.");
       await this.studio.refresh();
       const found = this.studio.find(this.output);
-      if (found) await this.show_results(found.time === before);
+      if (found) await this.show_results(found.time === before, done.code !== 0);
     } finally {
       this.is_following = this.is_running = false;
       live.end();
     }
   }
 
-  /** Whole results: scene, all panels; the run before stays in a chart of both. `is_old`: the last run wrote none. */
-  async show_results(is_old = false) {
+  /**
+   * Whole results: scene, all panels; the run before stays in a chart of both.
+   * @param {boolean} [is_old]  the last run wrote none  @param {boolean} [is_cut]  it was stopped: the scene stays at its end
+   */
+  async show_results(is_old = false, is_cut = false) {
     await this.studio.attempt(async () => {
       const { chapter } = await ask("chapter", { file: this.output, bodies: this.bodies ?? [] });
       this.shown?.dispose();
       this.poles = null;
       this.shown = make_chapter(chapter, ["system", "motion"]);
       const run = this.shown.data.run;
-      this.show_scene(run, false, false, is_old ? null : this.earlier[0]);
+      this.show_scene(run, is_cut && !is_old, is_cut, is_old ? null : this.earlier[0]);
+      this.shown_model = null;
       const note = is_old ? [el("p", { class: "banner", role: "alert" }, "The last run wrote no results. These are the results of a run before.")] : [];
       this.result.replaceChildren(el("h2", {}, this.output), ...note, ...(is_old ? [] : this.make_ghosts(run)), this.shown.element);
       this.result.dataset.ready = is_old ? "old" : "true";
@@ -264,6 +273,7 @@ export class SystemView {
     this.shown = make_chapter(chapter, [], (name, chart, data) => {
       if (name === "poles") this.poles = new PolePanel(this, chart, data, options.some(([name]) => name === "--equilibrium"));
     });
+    this.shown_model = output;
     this.result.replaceChildren(el("h2", {}, output), this.shown.element);
     this.result.dataset.ready = verb;
     this.result.scrollIntoView({ block: "start" });
@@ -272,7 +282,10 @@ export class SystemView {
   report() {
     return this.studio.attempt(async () => {
       const output = stem(this.file) + ".html";
-      const done = await run_job({ verb: "report", files: [this.output, ...(this.bodies ?? [])], options: [["-o", output]] }, this.progress.update);
+      // What is on the screen: the run, and poles or a state of rest that were computed after it.
+      const files = [...(this.studio.has(this.output) ? [this.output] : []), ...(this.shown_model ? [this.shown_model] : [])];
+      if (files.length === 0) throw new Error("there are no results yet: run or linearize first");
+      const done = await run_job({ verb: "report", files: [...files, ...(this.bodies ?? [])], options: [["-o", output]] }, this.progress.update);
       this.progress.finish(done);
       await this.studio.refresh();
       if (done.code === 0) this.studio.say(`written: ${output}`);
@@ -327,7 +340,7 @@ class LiveCharts {
     if (!channel) return;
     const series = channel.columns.map((column, i) => run.make_series(channel, i, column.name || channel.path));
     if (this.chart) return this.chart.set_series(series);
-    this.chart = new Chart({ title: channel.path.slice(1), series, x_label: "time", y_label: channel.columns[0].unit, height: 240 });
+    this.chart = new Chart({ title: channel.path.slice(1), series, x_label: label_time(run), y_label: with_unit(channel.path.slice(1), channel.columns[0].unit), height: 240 });
     this.view.result.replaceChildren(this.chart.element);
   }
   end() {

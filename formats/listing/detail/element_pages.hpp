@@ -18,7 +18,10 @@ void begin_table(const records::ListedStep& step, const records::ListedElements&
 
 /// Adds the table of element forces of a block in Nastran's columns.
 void add_force_pages(const records::ListedStep& step, const records::ListedElements& block, Pages& pages);
-/// Adds the table of element stresses of a block in Nastran's columns.
+/// Adds the table of element stresses or strains of a block in Nastran's columns.
 void add_stress_pages(const records::ListedStep& step, const records::ListedElements& block, Pages& pages);
+
+/// Adds the tables of grid point stresses of a SURFACE or VOLUME.
+void add_grid_stress_pages(const records::ListedStep& step, const records::ListedGridStresses& block, Pages& pages);
 
 }  // namespace bough::listing::detail

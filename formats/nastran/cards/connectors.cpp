@@ -8,6 +8,14 @@
 namespace bough::nastran::detail {
 namespace {
 
+/// A place that a grid gives already.
+void warn_of_place(Card& card, int field, int gs, int ga) {
+  if (card.is_ok() && (gs != 0 || ga != 0))
+    card.warn("deck.unused-field", field,
+              std::string("XS YS ZS is not used: ") + (gs != 0 ? "GS" : "GA") + " gives the place",
+              "leave one of them out");
+}
+
 /// EID PID TYPE IDA IDB GS GA GB, XS YS ZS.
 void parse_cfast(Card& card, Reading& r) {
   records::Cfast e;
@@ -24,6 +32,7 @@ void parse_cfast(Card& card, Reading& r) {
   e.at = card.get_location();
   if (card.is_ok() && e.gs == 0 && e.ga == 0 && !has_place)
     card.fail("deck.missing-field", 5, "GS, GA and XS are blank", "give the grid or the place of the fastener");
+  if (has_place) warn_of_place(card, 8, e.gs, e.ga);
   if (card.is_ok() && e.gb != 0 && e.ga == 0)
     card.fail("deck.missing-field", 6, "GA is blank and GB is not", "give both ends or none");
   if (r.claim("CFAST", e.id, card)) r.deck.special.cfast.push_back(e);
@@ -85,6 +94,7 @@ void parse_cweld(Card& card, Reading& r) {
   e.at = card.get_location();
   if (card.is_ok() && e.format != "ALIGN" && e.gs == 0 && e.ga == 0 && !has_place)
     card.fail("deck.missing-field", 2, "GS, GA and XS are blank", "give the grid or the place of the weld");
+  if (has_place && e.format != "ALIGN") warn_of_place(card, place, e.gs, e.ga);
   if (card.is_ok() && e.format == "GRIDID" && e.grids_a.size() < 3)
     card.fail("deck.missing-field", 8, "GA1 to GA8 are less than 3 grids", "give the corners of the shell");
   if (r.claim("CWELD", e.id, card)) r.deck.special.cweld.push_back(std::move(e));
@@ -109,7 +119,8 @@ void write_cfasts(const records::Deck& deck, CardSink& sink) {
   for (const auto& e : deck.special.cfast) {
     CardFields card("CFAST");
     card.add(e.id).add(e.pid).add_word(e.by_elements ? "ELEM" : "PROP").add(e.ida).add(e.idb);
-    sink.put(card.add_id(e.gs).add_id(e.ga).add_id(e.gb).add(e.xs));
+    card.add_id(e.gs).add_id(e.ga).add_id(e.gb);
+    sink.put(e.gs > 0 || e.ga > 0 ? card : card.add(e.xs));
   }
 }
 void write_pfasts(const records::Deck& deck, CardSink& sink) {
@@ -140,7 +151,7 @@ void write_cwelds(const records::Deck& deck, CardSink& sink) {
     } else {
       card.add_id(e.ida).add_id(e.idb).end_line();
     }
-    sink.put(card.add(e.xs));
+    sink.put(e.gs > 0 || e.ga > 0 ? card : card.add(e.xs));
   }
 }
 void write_pwelds(const records::Deck& deck, CardSink& sink) {

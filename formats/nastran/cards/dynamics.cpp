@@ -193,7 +193,11 @@ int find_excitation(const std::string& type) {
   return first == 'D' || first == '1' ? 1 : first == 'V' || first == '2' ? 2 : first == 'A' || first == '3' ? 3 : 0;
 }
 void note_rload(const UnitConverter& u, UnitNotes& notes) {
-  for (const int field : {4, 5}) notes.table_axes[u.get(field)].insert("Hz");
+  for (const int field : {4, 5}) {
+    if (u.get(field).empty()) continue;
+    notes.table_axes[u.get(field)].insert("Hz");
+    notes.table_values[u.get(field)].insert(".");
+  }
   notes.enforced[u.get(1)].insert(find_excitation(u.get(6)));
 }
 void note_tload(const UnitConverter& u, UnitNotes& notes) {
@@ -201,6 +205,7 @@ void note_tload(const UnitConverter& u, UnitNotes& notes) {
 }
 void note_tload1(const UnitConverter& u, UnitNotes& notes) {
   notes.table_axes[u.get(4)].insert("T");
+  notes.table_values[u.get(4)].insert(".");
   note_tload(u, notes);
 }
 

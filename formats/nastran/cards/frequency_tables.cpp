@@ -1,6 +1,7 @@
 /// Properties over frequency: PELAST, PDAMPT, PBUSHT. Source of the fields: MSC Nastran Quick Reference Guide, the
 /// entries named.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "formats/nastran/detail/card_sink.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 using records::DynamicCards;
 using records::FrequencyTables;
+
+constexpr double kEqualFactors = 1e-14;  ///< relative difference
 
 FrequencyTables read_head(Card& card, const char* property) {
   FrequencyTables t;
@@ -139,7 +142,10 @@ std::string find_table_value(const UnitConverter& u) {
       words.insert(choose_word(u.find_property_motion(element, pid), is_spring ? "K" : "B", is_spring ? "Q" : "BR"));
     }
   if (words.empty()) return ".";
-  return words.size() == 1 ? *words.begin() : "?";
+  if (words.size() == 1 || words.count("?") > 0) return words.size() == 1 ? *words.begin() : "?";
+  const double factor = u.calc_factor(*words.begin());
+  const auto is_equal = [&](const auto& word) { return std::abs(u.calc_factor(word) / factor - 1) < kEqualFactors; };
+  return std::all_of(words.begin(), words.end(), is_equal) ? *words.begin() : "??";
 }
 
 void add_frequency_table_parsers(DynamicParserTable& table) {

@@ -32,7 +32,12 @@ void parse_pbush(Card& card, Reading& r) {
       continue;
     }
     const auto flag = card.read_word(line + 1, "flag", "", {"K", "B", "GE", "RCV", "M", "T"});
-    if (flag == "RCV" || flag == "T") card.use(line + 2, line + 8);
+    if (flag == "T") card.use(line + 2, line + 8);
+    if (flag == "RCV") {
+      static constexpr const char* names[] = {"SA", "ST", "EA", "ET"};
+      for (int i = 0; i < 4; ++i) p.rcv[static_cast<std::size_t>(i)] = card.read_real(line + 2 + i, names[i], 1.0);
+      card.use(line + 6, line + 8);
+    }
     if (flag == "K") read_six(card, line + 2, "K1 to K6", p.k);
     if (flag == "B") read_six(card, line + 2, "B1 to B6", p.b);
     if (flag == "GE") {
@@ -67,6 +72,11 @@ void write_pbush(const records::Pbush& p, CardSink& sink) {
   add_six("K", p.k);
   add_six("B", p.b);
   add_six("GE", p.ge);
+  if (p.rcv != records::Pbush{}.rcv) {
+    if (card.get_size() > 1) card.end_line().add_blank();
+    card.add_word("RCV");
+    for (const double x : p.rcv) card.add(x);
+  }
   if (p.mass != 0) {
     if (card.get_size() > 1) card.end_line().add_blank();
     card.add_word("M").add(p.mass);

@@ -276,8 +276,11 @@ void convert_unbalnc(UnitConverter& u) {
   u.scale(11, 12, "Hz");
 }
 void note_unbalnc(const UnitConverter& u, UnitNotes& notes) {
-  for (const int field : {1, 8, 10})
-    if (parse_int(u.get(field))) notes.table_axes[u.get(field)].insert("Hz");
+  for (const auto& [field, word] : {std::pair(1, "M"), std::pair(8, "L"), std::pair(10, "L")})
+    if (parse_int(u.get(field))) {
+      notes.table_axes[u.get(field)].insert("Hz");
+      notes.table_values[u.get(field)].insert(word);
+    }
 }
 
 }  // namespace

@@ -76,9 +76,6 @@ class Builder {
     finish_fluid(reading_);
     finish_old_elements(reading_);
     finish_rigid_ids(reading_);
-    // Without tables the set changes no model: subcases that differ in it share theirs.
-    if (deck_.temperatures.materials.empty())
-      for (auto& subcase : deck_.subcases) subcase.material_temperature = 0;
     design_.report(deck_, diagnostics_);
     leftovers_.report(diagnostics_);
     report_names();

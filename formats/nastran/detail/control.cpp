@@ -11,6 +11,7 @@
 #include "formats/nastran/detail/dynamic_control.hpp"
 #include "formats/nastran/detail/known_params.hpp"
 #include "formats/nastran/detail/matrix_selection.hpp"
+#include "formats/nastran/detail/post_control.hpp"
 #include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
@@ -74,13 +75,18 @@ class CaseControl {
     if (c.word.empty() || is_switched_off(c)) return;
     if (is_command(c.word, "OUTPUT", 4)) {
       in_plot_section_ = !c.options.empty();
+      in_post_section_ = c.options.starts_with("POST");
       return;
     }
     if (is_command(c.word, "SUBCASE", 4) || c.word == "SYM") {  // SYM: a subcase of a part with a symmetry
       begin_subcase(c);
       return;
     }
-    if (in_plot_section_) return report_misplaced(c.word);
+    const bool is_stress_request = is_command(c.word, "GPSTRESS", 4) || is_command(c.word, "STRFIELD", 4);
+    if (in_post_section_ && options_.post && !is_stress_request)
+      read_post_command({c.word, c.options, c.value}, at_, deck_.locate(at_), *options_.post,
+                        *options_.post_diagnostics);
+    if (in_plot_section_ && !(in_post_section_ && is_stress_request)) return report_misplaced(c.word);
     if (c.word == "SUBCOM" || c.word == "SYMCOM" || c.word == "REPCASE") {
       // Combinations of results: what follows belongs to them, not to the subcase before.
       if (options_.combinations) return begin_combination(c);
@@ -291,7 +297,7 @@ class CaseControl {
   /// SUBCOM n, SYMCOM n, REPCASE n: the commands that follow belong to them.
   void begin_combination(const Command& c) {
     end_combination();
-    in_plot_section_ = skipping_ = false;
+    in_plot_section_ = in_post_section_ = skipping_ = false;
     const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,\t")));
     records::CaseCombination combination;
     combination.control = above_;
@@ -350,7 +356,7 @@ class CaseControl {
 
   void begin_subcase(const Command& c) {
     end_combination();
-    in_plot_section_ = skipping_ = false;
+    in_plot_section_ = in_post_section_ = skipping_ = false;
     const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,\t")));
     if (!id || *id <= 0) {
       bad_value(c);
@@ -581,7 +587,8 @@ class CaseControl {
   ControlOptions options_;
   Subcase above_;
   records::DynamicSelection selection_above_;
-  bool in_subcase_ = false, in_plot_section_ = false, skipping_ = false, in_combination_ = false;
+  bool in_subcase_ = false, in_plot_section_ = false, in_post_section_ = false, skipping_ = false,
+       in_combination_ = false;
   std::vector<int> real_ids_, sym_ids_;
   bool is_symcom_over_ = false;
   records::CardLocation at_;

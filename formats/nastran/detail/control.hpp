@@ -20,6 +20,9 @@ struct ControlOptions {
   /// Receives SUBCOM, SYMCOM and REPCASE, and their errors (deck.combination). Both or none; with dynamics.
   std::vector<records::CaseCombination>* combinations = nullptr;
   Diagnostics* combination_diagnostics = nullptr;
+  /// Receives SURFACE, VOLUME and SET of OUTPUT(POST), and their errors; null: unused.
+  records::CaseRequests* post = nullptr;
+  Diagnostics* post_diagnostics = nullptr;
   /// Receives the options of output requests in brackets, by file and line; null: unused.
   std::map<std::pair<int, int>, std::string>* request_options = nullptr;
   bool notes_combinations = true;       ///< without `combinations`: they are named as not used

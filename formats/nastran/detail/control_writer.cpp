@@ -120,6 +120,7 @@ void write_dynamic_selection(const DynamicSelection& selection, std::string& out
   add_command("RCROSS", selection.rcross, out);
   add_command("RGYRO", selection.rgyro, out);
   add_command("RMETHOD", selection.rmethod, out);
+  add_command("MODSEL", selection.modsel, out);
   for (const auto& input : direct_inputs) add_command(input.name, selection.*input.list, out);
   if (selection.resvec) add_command("RESVEC", *selection.resvec ? "YES" : "NO", out);
   if (selection.effective_mass_grid)
@@ -167,6 +168,7 @@ class ControlWriter {
       write_sets(subcase, out_);
       if (dynamics_ == nullptr) continue;
       if (const auto found = dynamics_->selections.find(subcase.id); found != dynamics_->selections.end()) {
+        write_own_sets(found->second);
         write_dynamic_selection(found->second, out_);
         write_requests(found->second);
       }
@@ -181,10 +183,13 @@ class ControlWriter {
   }
 
  private:
-  /// Output requests, and their sets that are not common.
-  void write_requests(const DynamicSelection& selection) {
+  /// Sets that are not common.
+  void write_own_sets(const DynamicSelection& selection) {
     for (const auto& [id, set] : selection.sets)
       if (common_.count(id) == 0) out_ += write_set(id, set);
+  }
+
+  void write_requests(const DynamicSelection& selection) {
     for (const auto& [command, request] : selection.outputs) {
       const auto options = dynamics_->request_options.find({request.at.file, request.at.line});
       const auto name = command + (options == dynamics_->request_options.end() ? "" : "(" + options->second + ")");
@@ -248,6 +253,7 @@ class ControlWriter {
       out_ += combination.command + " " + std::to_string(combination.control.id) + "\n";
       write_titles(combination.control, out_);
       if (combination.command != "REPCASE") write_factors(combination);
+      write_own_sets(combination.selection);
       write_requests(combination.selection);
     }
   }

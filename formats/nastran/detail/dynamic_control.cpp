@@ -31,7 +31,8 @@ constexpr std::array requests{
     Request{"VELO", "VELOCITY"},     Request{"ACCE", "ACCELERATION"}, Request{"SPCF", "SPCFORCES"},
     Request{"FORC", "FORCE"},        Request{"ELFO", "FORCE"},        Request{"OLOA", "OLOAD"},
     Request{"MPCF", "MPCFORCES"},    Request{"STRE", "STRESS"},       Request{"ELST", "STRESS"},
-    Request{"STRA", "STRAIN"},       Request{"ESE", "ESE"},           Request{"GPFO", "GPFORCE"}};
+    Request{"STRA", "STRAIN"},       Request{"ESE", "ESE"},           Request{"GPFO", "GPFORCE"},
+    Request{"GPST", "GPSTRESS"},     Request{"STRF", "STRFIELD"}};
 
 bool has_option(std::string_view options, std::string_view option) {
   while (!options.empty()) {
@@ -66,6 +67,7 @@ DynamicCommand read_request(const CommandText& c, const char* name, DynamicSelec
   }
   request.is_phase = has_option(c.options, "PHASE");
   request.is_punched = has_option(c.options, "PUNCH");
+  request.is_fibre = has_option(c.options, "FIBER");
   request.is_printed = has_option(c.options, "PRINT") || (!request.is_punched && !has_option(c.options, "PLOT"));
   request.at = c.at;
   selected.outputs[name] = request;

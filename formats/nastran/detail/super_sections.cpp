@@ -83,7 +83,9 @@ void read_sections(const BulkSections& bulk, const ComponentCases& cases, const 
   for (const auto& section : bulk.sections) {
     auto read = std::make_shared<records::Deck>();
     read->files = deck.files;
-    read->subcases.emplace_back();
+    const auto found = cases.find(section.id);
+    // Temperatures of materials are selected by the subcases of the section, or by all.
+    read->subcases = found != cases.end() ? found->second : deck.subcases;
     Diagnostics own;
     read_bulk(section.source, 0, options, *read, own);
     // Sets of a component name its boundary and its generalized coordinates.
@@ -91,7 +93,7 @@ void read_sections(const BulkSections& bulk, const ComponentCases& cases, const 
       if (item.id != "deck.unused-card" || std::string_view("BCQ").find(item.what.front()) == std::string_view::npos ||
           item.what.substr(1, 3) != "SET")
         diagnostics.add(item);
-    if (const auto found = cases.find(section.id); found != cases.end()) read->subcases = found->second;
+    if (found == cases.end()) read->subcases.assign(1, {});
     deck.super.sections.push_back({section.id, std::move(read), section.at});
   }
 }

@@ -53,7 +53,9 @@ class UnitConverter {
   void fail(int field, const std::string& why);
   /// Adds deck.unit-card.
   void fail_card(const std::string& why, const std::string& advice);
-  /// Scales a field by the word of its dimension: "." none, "?" not known.
+  /// Factor of a dimension by its word; 1 for ".".
+  double calc_factor(const std::string& word) const;
+  /// Scales a field by the word of its dimension: "." none, "?" not known, "??" several.
   void scale(int field, const std::string& word);
   /// Scales the fields first to last - 1 by one dimension.
   void scale(int first, int last, const std::string& word);

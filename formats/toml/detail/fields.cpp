@@ -86,6 +86,13 @@ std::vector<std::string> Fields::get_strings(const std::string& key) const {
   return collect(table_.find(key), [](const Value& v) { return v.is_string() ? std::optional(v.text) : std::nullopt; });
 }
 
+std::vector<Eigen::Vector3d> Fields::get_vectors(const std::string& key) const {
+  return collect(table_.find(key), [](const Value& row) {
+    if (row.items.size() != 3 || !row.items[0].is_number()) return std::optional<Eigen::Vector3d>();
+    return std::optional(Eigen::Vector3d(row.items[0].number, row.items[1].number, row.items[2].number));
+  });
+}
+
 std::vector<Fields> Fields::get_tables(const std::string& key) const {
   std::vector<Fields> tables;
   const Value* v = table_.find(key);

@@ -46,6 +46,8 @@ class Fields {
   bool get_bool(const std::string& key, bool otherwise) const;
   /// List of three numbers; `otherwise` for a list of another length.
   Eigen::Vector3d get_vector(const std::string& key, const Eigen::Vector3d& otherwise) const;
+  /// Returns the rows of three numbers of a list of lists; the schema reports others.
+  std::vector<Eigen::Vector3d> get_vectors(const std::string& key) const;
   /// One number or a list of them; empty when absent.
   std::vector<double> get_numbers(const std::string& key) const;
   std::vector<int> get_ints(const std::string& key) const;

@@ -47,7 +47,8 @@ const std::map<std::string, Keys>& get_types() {
       {"solar_pressure",
        {ElementType::SolarPressure,
         {"body", "pressure", "sun"},
-        {"normal", "area", "elements", "node", "position", "specular", "diffuse", "planet", "sun_size", "one_sided"}}}};
+        {"normal", "area", "elements", "node", "position", "specular", "diffuse", "planet", "sun_size", "one_sided",
+         "shaded_by"}}}};
   return types;
 }
 
@@ -147,6 +148,7 @@ void read_element(const Fields& table, const Keys& keys, ForceElementRecord& e, 
   for (const auto& [key, member] : vectors) e.*member = table.get_vector(key, e.*member);
   e.bodies = table.get_strings("bodies");
   e.planet = table.get_string("planet");
+  e.shaded_by = table.get_strings("shaded_by");
   e.sun_size = table.get_number("sun_size", kSunSize);
   e.has_faces = table.has("elements");
   e.faces = table.get_ints("elements");

@@ -10,7 +10,8 @@ namespace bough::nastran {
 namespace {
 
 constexpr const char* cards =
-    "CFAST,600,601,PROP,40,41,,1,2,+\n+,.25,.5,.125\nPFAST,601,.006,,,1.+6,2.+6,3.+6,10.,+\n+,20.,30.,.125,.02\n"
+    "CFAST,600,601,PROP,40,41,,1,2\nCFAST,616,601,ELEM,42,43,,,,+\n+,.25,.5,.125\nPFAST,601,.006,,,1.+6,2.+6,3.+6,10.,+"
+    "\n+,20.,30.,.125,.02\n"
     "CWELD,602,603,,PARTPAT\n,40,41\n,.25,.5,.125\nCWELD,604,603,1,GRIDID,,,QT\n,1,2,3,4\n,5,6,7\n"
     "CWELD,605,603,,ALIGN,1,2\nPWELD,603,1,.006,,,,,SPOT\n,.25,4.\nCPYRAM,606,607,1,2,3,4,5\n"
     "MATT1,608,609\nMATT2,610,,609\nMATT8,611,609,,,,,,,+\n+,612,,,,,,,613\nMATT9,614,609\n"
@@ -21,11 +22,11 @@ const CardSample sample(cards);
 TEST(ConnectorCards, AreReadAndWritten) {
   auto deck = read_clean(cards);
   for (const bool is_again : {false, true}) {
-    ASSERT_EQ(deck.special.cfast.size(), 1u);
+    ASSERT_EQ(deck.special.cfast.size(), 2u);
     const auto& e = deck.special.cfast[0];
     EXPECT_EQ(std::tuple(e.id, e.pid, e.by_elements, e.ida, e.idb, e.gs, e.ga, e.gb),
               std::tuple(600, 601, false, 40, 41, 0, 1, 2));
-    EXPECT_EQ(e.xs, Eigen::Vector3d(.25, .5, .125));
+    EXPECT_EQ(deck.special.cfast[1].xs, Eigen::Vector3d(.25, .5, .125));
     const auto& p = deck.special.pfast.at(0);
     EXPECT_EQ(std::tuple(p.id, p.d, p.mcid, p.mflag, p.mass, p.ge), std::tuple(601, .006, -1, 0, .125, .02));
     EXPECT_EQ(p.kt, (std::array<double, 3>{1e6, 2e6, 3e6}));
