@@ -75,7 +75,7 @@ class Evaluator {
   }
 
  private:
-  /// Reports a MATTi without its MATi.
+  /// Reports a MATTi without its MATi: no element has it, unless the material is of another kind.
   void check_material(const records::MaterialTables& t) {
     const auto& d = source_;
     const auto has = [&](const auto& records) {
@@ -90,12 +90,12 @@ class Evaluator {
     }
     if (d.is_refused(t.mid, {t.material})) return;
     const std::string number = t.material.substr(3), id = std::to_string(t.mid);
-    diagnostics_.error(
-        "fe.missing-material", source_.locate(t.at),
-        "MATT" + number + " " + id + " refers to " + t.material + " " + id +
-            (other.empty() ? ", which the deck does not define" : ", but material " + id + " is a " + other),
-        other.empty() ? "add the " + t.material + " or correct the id"
-                      : "write MATT" + other.substr(3) + " with its fields, or correct the id");
+    diagnostics_.add(
+        {other.empty() ? Severity::Warning : Severity::Error, "fe.missing-material", source_.locate(t.at),
+         "MATT" + number + " " + id + " refers to " + t.material + " " + id +
+             (other.empty() ? ", which the deck does not define" : ", but material " + id + " is a " + other),
+         other.empty() ? "add the " + t.material + " or correct the id"
+                       : "write MATT" + other.substr(3) + " with its fields, or correct the id"});
   }
 
   template <class Properties>

@@ -70,6 +70,8 @@ WholeDeck make_whole_deck(const detail::Source& source, ReadOptions options, Dia
             {.dynamics = &deck,
              .combinations = &deck.combinations,
              .combination_diagnostics = &diagnostics,
+             .post = &deck.post,
+             .post_diagnostics = &diagnostics,
              .request_options = &deck.request_options,
              .is_whole = true},
             diagnostics);

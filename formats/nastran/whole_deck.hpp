@@ -17,6 +17,7 @@ struct WholeDeck : records::DynamicDeck {
   std::vector<records::CaseCombination> combinations;
   /// Options of output requests in brackets, in upper case, by file and line of OutputRequest::at.
   std::map<std::pair<int, int>, std::string> request_options;
+  records::CaseRequests post;  ///< of it the sets, surfaces and volumes of OUTPUT(POST)
 };
 
 /// Reads a deck that is written again. No card or command is an error because an analysis lacks it.

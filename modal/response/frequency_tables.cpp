@@ -44,7 +44,7 @@ void report_without_property(const records::Deck& deck, const std::vector<record
                                                        : find_record(deck.pbush, tables.pid) != deck.pbush.end();
     if (is_found) continue;
     const auto id = " " + std::to_string(tables.pid);
-    diagnostics.error(
+    diagnostics.warning(
         "modal.table-without-property", deck.locate(tables.at),
         tables.property + "T" + id + " gives tables for " + tables.property + id + ", which the deck does not define",
         "add the " + tables.property + " card, or correct the id");

@@ -146,13 +146,14 @@ class FrequencyTables(DeckResponse):
         for tables, error, says in [("PELAST,10,77\n", "modal.missing-table", ["PELAST 10", "77"]),
                                     ("PBUSHT,30,Q,77\n", "deck.bad-word", ["flag"]),
                                     ("PBUSHT,30,,77\n", "deck.missing-field", ["without a flag"]),
-                                    ("PELAST,11,101\n" + TABLES, "modal.table-without-property", ["PELAST 11", "PELAS 11", "d.bdf:"]),
-                                    ("PDAMPT,30,103\n" + TABLES, "modal.table-without-property", ["PDAMPT 30", "PDAMP 30"]),
-                                    ("PBUSHT,20,K,101\n" + TABLES, "modal.table-without-property", ["PBUSHT 20", "PBUSH 20"]),
                                     ("PDAMPT,20,103\nPDAMPT,20,103\n", "deck.duplicate-id", ["20"])]:
             self.write("d.bdf", PAIR.format(sol=108, case="", tables=tables))
             self.fails(1, "frequency", "d.bdf", error=error, says=says)
-
+        for cards, says in (("PELAST,11,101\n", "PELAST 11 gives tables for PELAS 11"), ("PDAMPT,30,103\n", "PDAMPT 30 gives tables for PDAMP 30"),
+                            ("PBUSHT,20,K,101\n", "PBUSHT 20 gives tables for PBUSH 20")):
+            self.write("d.bdf", PAIR.format(sol=108, case="", tables=cards + TABLES))
+            found = self.bough("frequency", "d.bdf").stderr
+            self.assertRegex(found, rf"d\.bdf:\d+: warning: {says}.*modal.table-without-property")
 
     def test_one_table_for_a_load_and_a_property(self):
         """Values of different dimensions in one table are an error of `convert`, unless their factors are equal."""

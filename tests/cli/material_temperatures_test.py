@@ -275,10 +275,13 @@ class MaterialTemperatures(ProgramTest):
             self.fails(1, "static", "d.bdf", error=error, says=says)
         for old, new, says in [("MATT8,8,", "MATT8,1,", ["MATT8 1 refers to MAT8 1, but material 1 is a MAT1", "write MATT1"]),
                                ("MATT9,9,", "MATT9,8,", ["MATT9 8", "is a MAT8"]),
-                               ("MATT2,2,", "MATT2,9,", ["MATT2 9", "is a MAT9"]),
-                               ("MATT1,1,", "MATT1,77,", ["MATT1 77 refers to MAT1 77, which the deck does not define"])]:
+                               ("MATT2,2,", "MATT2,9,", ["MATT2 9", "is a MAT9"])]:
             self.write("d.bdf", make(101, case, tables.replace(old, new), "TEMPD,6,60.\n"))
             self.fails(1, "static", "d.bdf", error="fe.missing-material", says=[*says, "d.bdf:"])
+        # No element has a material that is not there.
+        self.write("d.bdf", make(101, case, tables.replace("MATT1,1,", "MATT1,77,"), "TEMPD,6,60.\n"))
+        self.assertRegex(self.bough("static", "d.bdf").stderr,
+                         r"d\.bdf:\d+: warning: MATT1 77 refers to MAT1 77, which the deck does not define")
         self.write("d.bdf", make(101, case, tables, "TEMP,6,1,60.\n"))
         self.fails(1, "static", "d.bdf", error="fe.missing-temperature", says=["at which its material is evaluated"])
         self.write("d.bdf", make(101, "LOAD = 5", tables, "TEMPD,6,60.\n"))

@@ -146,6 +146,26 @@ std::map<int, CaseSet> find_common_sets(const WholeDeck& deck) {
   return common;
 }
 
+std::string write_stress_field(const records::StressField& field) {
+  std::vector<std::string> items;
+  if (field.set > 0) items.push_back("SET " + std::to_string(field.set));
+  if (field.system == records::StressField::System::Element) items.emplace_back("SYSTEM ELEMENT");
+  if (field.system == records::StressField::System::Cord) items.push_back("SYSTEM CORD " + std::to_string(field.cid));
+  if (field.is_volume) {
+    if (field.has_principal != field.has_direct) items.emplace_back(field.has_direct ? "DIRECT" : "PRINCIPAL");
+    return join_lines("VOLUME " + std::to_string(field.id) + " ", items);
+  }
+  std::string fibres;
+  for (const auto& fibre : field.fibres) fibres += " " + fibre;
+  items.push_back("FIBRE" + fibres);
+  items.push_back("AXIS X" + std::to_string(field.axis));
+  items.push_back(std::string("NORMAL ") + (field.is_reversed ? "M" : "") + field.normal);
+  items.emplace_back(field.is_geometric ? "GEOMETRIC" : "TOPOLOGICAL");
+  items.push_back("TOLERANCE " + format_exact_real(field.tolerance));
+  items.emplace_back(field.has_break ? "BRANCH BREAK" : "BRANCH NOBREAK");
+  return join_lines("SURFACE " + std::to_string(field.id) + " ", items);
+}
+
 class ControlWriter {
  public:
   ControlWriter(const records::Deck& deck, const WholeDeck* dynamics, std::string& out)
@@ -180,6 +200,7 @@ class ControlWriter {
       begin(id);
       write_sets(component.control, out_);
     }
+    if (dynamics_ != nullptr) write_post();
   }
 
  private:
@@ -187,6 +208,14 @@ class ControlWriter {
   void write_own_sets(const DynamicSelection& selection) {
     for (const auto& [id, set] : selection.sets)
       if (common_.count(id) == 0) out_ += write_set(id, set);
+  }
+
+  void write_post() {
+    const auto& post = dynamics_->post;
+    if (post.post_sets.empty() && post.stress_fields.empty()) return;
+    out_ += "OUTPUT(POST)\n";
+    for (const auto& [id, set] : post.post_sets) out_ += write_set(id, set);
+    for (const auto& field : post.stress_fields) out_ += write_stress_field(field);
   }
 
   void write_requests(const DynamicSelection& selection) {
