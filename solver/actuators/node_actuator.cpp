@@ -47,7 +47,7 @@ class TorqueRod final : public NodeActuator {
   Vector3d calc_moment(const BlockInput& in, const TreeData& data, double dipole) const {
     const Tree& tree = in.motion->tree;
     const BodyState& s = data[tree.markers[static_cast<size_t>(marker)].body].state;
-    const Vector3d p = s.p_WBo + s.R_WB * data.markers[static_cast<size_t>(marker)].r;
+    const Vector3d p = s.calc_place(data.markers[static_cast<size_t>(marker)].r).p_W;
     return dipole * calc_axis(tree, data).cross(s.R_WB.transpose() * in.motion->gravity.calc_magnetic_field(p));
   }
 };

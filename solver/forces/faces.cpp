@@ -32,11 +32,11 @@ FaceMotion FaceElement::calc_face(const Tree& tree, const TreeData& data, const 
   rate /= face.count;
   const Vector3d area = face.count == 3 ? (r[1] - r[0]).cross(r[2] - r[0]) : (r[2] - r[0]).cross(r[3] - r[1]);
   FaceMotion motion;
-  motion.p = s.p_WBo + s.R_WB * middle;
+  motion.place = s.calc_place(middle);
   motion.v = s.R_WB * (s.v_B + s.w_B.cross(middle) + rate);
   motion.area = 0.5 * (s.R_WB * area);
   motion.count = face.count;
-  for (int i = 0; i < face.count; ++i) motion.corners.col(i) = s.p_WBo + s.R_WB * r[static_cast<size_t>(i)];
+  for (int i = 0; i < face.count; ++i) motion.corners.col(i) = s.R_WB * (r[static_cast<size_t>(i)] - middle);
   return motion;
 }
 
@@ -53,7 +53,7 @@ ForceResult FaceElement::calc_sum(const Tree& tree, const TreeData& data, Loads*
     const Vector3d f_W = calc_force(motion, seen);
     const Vector3d f = s.R_WB.transpose() * f_W;
     sum += f_W;
-    moment += (s.R_WB.transpose() * (motion.p - s.p_WBo)).cross(f);
+    moment += (s.R_WB.transpose() * (motion.place.p_R - s.p_RBo)).cross(f);
     if (loads == nullptr) continue;
     for (int i = 0; i < face.count; ++i) {
       const auto shape = mesh_.shapes.middleRows<3>(3 * face.corner[static_cast<size_t>(i)]);
@@ -69,7 +69,7 @@ ForceResult FaceElement::calc_sum(const Tree& tree, const TreeData& data, Loads*
 ForceResult DragOnFaces::calc(const Tree& tree, const TreeData& data, Loads* loads) const {
   return calc_sum(tree, data, loads, [&](const FaceMotion& face, double& seen) -> Vector3d {
     Vector3d v = face.v;
-    const double share = law_.calc_air(face.p, v);
+    const double share = law_.calc_air(face.place.p_W, v);
     const double speed = v.norm(), along = face.area.dot(v);
     if (speed == 0 || (is_one_sided_ && along < 0)) return Vector3d::Zero();
     seen += std::abs(along) / speed;
@@ -93,7 +93,7 @@ ForceResult SunOnFaces::calc(const Tree& tree, const TreeData& data, Loads* load
     if (projected == 0) return Vector3d::Zero();
     double share = 1;
     if (!panel_.shading.is_empty())
-      share = panel_.shading.calc_lit_share(data, face.corners.leftCols(face.count), face.area);
+      share = panel_.shading.calc_lit_share(data, face.place, face.corners.leftCols(face.count), face.area);
     seen += share * projected;
     return calc_panel_force(panel_, face.area / area, area * light * share);
   });

@@ -23,9 +23,10 @@ struct MeshFaces {
 
 /// Place, motion and vector area of a face, in W.
 struct FaceMotion {
-  Vector3d p = Vector3d::Zero(), v = Vector3d::Zero();  ///< of its centroid
-  Vector3d area = Vector3d::Zero();                     ///< L²; along its normal
-  Eigen::Matrix<double, 3, 4> corners;                  ///< the first `count` columns
+  Place place;                          ///< of its centroid
+  Vector3d v = Vector3d::Zero();        ///< of its centroid
+  Vector3d area = Vector3d::Zero();     ///< L²; along its normal
+  Eigen::Matrix<double, 3, 4> corners;  ///< from the centroid; the first `count` columns
   int count = 0;
 };
 

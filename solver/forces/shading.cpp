@@ -91,15 +91,14 @@ Shading::Shading(std::vector<ShadingBody> bodies, const Vector3d& sun_W) : bodie
   plane_.row(1) = sun_W_.cross(across).transpose();
 }
 
-double Shading::calc_lit_share(const TreeData& data, const Eigen::Ref<const Eigen::Matrix3Xd>& corners_W,
-                               const Vector3d& area_W) const {
+double Shading::calc_lit_share(const TreeData& data, const Place& middle,
+                               const Eigen::Ref<const Eigen::Matrix3Xd>& corners_W, const Vector3d& area_W) const {
   const double facing = area_W.dot(sun_W_);
   if (facing == 0) return 1;
   std::array<std::byte, 32768> buffer;
   std::pmr::monotonic_buffer_resource memory(buffer.data(), buffer.size());
   Polygon face(&memory);
-  const Vector3d middle_W = corners_W.rowwise().mean();
-  for (Eigen::Index i = 0; i < corners_W.cols(); ++i) face.emplace_back(plane_ * (corners_W.col(i) - middle_W));
+  for (Eigen::Index i = 0; i < corners_W.cols(); ++i) face.emplace_back(plane_ * corners_W.col(i));
   if (facing < 0) std::reverse(face.begin(), face.end());
   const double whole = calc_area(face);
   if (!(whole > 0)) return 1;
@@ -110,7 +109,7 @@ double Shading::calc_lit_share(const TreeData& data, const Eigen::Ref<const Eige
     const BodyState& s = data[shading.body].state;
     corners.clear();
     for (Eigen::Index i = 0; i < shading.corners_B.cols(); ++i) {
-      const Vector3d r_W = s.p_WBo + s.R_WB * shading.corners_B.col(i) - middle_W;
+      const Vector3d r_W = s.calc_place(shading.corners_B.col(i)) - middle;
       corners.emplace_back(plane_ * r_W, area_W.dot(r_W) / facing);
     }
     Polygon points(&memory);
@@ -131,16 +130,15 @@ double Shading::calc_lit_share(const TreeData& data, const Eigen::Ref<const Eige
   return std::clamp(seen / whole, 0.0, 1.0);
 }
 
-double Shading::calc_lit_share_of_disc(const TreeData& data, const Vector3d& centre_W, const Vector3d& normal_W,
+double Shading::calc_lit_share_of_disc(const TreeData& data, const Place& centre, const Vector3d& normal_W,
                                        double area) const {
   constexpr int kSides = 48;
   constexpr double kStep = 2 * std::numbers::pi / kSides;
   const double radius = std::sqrt(2 * area / (kSides * std::sin(kStep)));  // of the polygon with this area
   const Vector3d x = normal_W.unitOrthogonal(), y = normal_W.cross(x);
   Eigen::Matrix<double, 3, kSides> corners_W;
-  for (int i = 0; i < kSides; ++i)
-    corners_W.col(i) = centre_W + radius * (std::cos(i * kStep) * x + std::sin(i * kStep) * y);
-  return calc_lit_share(data, corners_W, area * normal_W);
+  for (int i = 0; i < kSides; ++i) corners_W.col(i) = radius * (std::cos(i * kStep) * x + std::sin(i * kStep) * y);
+  return calc_lit_share(data, centre, corners_W, area * normal_W);
 }
 
 }  // namespace bough::solver

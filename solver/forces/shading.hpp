@@ -27,13 +27,12 @@ class Shading {
 
   /// Share of the projected area of a face that is lit, 0 to 1, after calc_position. No allocation for hulls of some
   /// dozens of corners.
-  /// \param corners_W  one column for each corner of the convex face, in order.  \param area_W  vector area of the
-  /// face.
-  double calc_lit_share(const TreeData& data, const Eigen::Ref<const Eigen::Matrix3Xd>& corners_W,
+  /// \param middle  of the face.  \param corners_W  of the convex face, in order: a column each, from the middle, in W.
+  /// \param area_W  vector area of the face.
+  double calc_lit_share(const TreeData& data, const Place& middle, const Eigen::Ref<const Eigen::Matrix3Xd>& corners_W,
                         const Vector3d& area_W) const;
   /// Lit share of a disc, as a polygon of its area.
-  double calc_lit_share_of_disc(const TreeData& data, const Vector3d& centre_W, const Vector3d& normal_W,
-                                double area) const;
+  double calc_lit_share_of_disc(const TreeData& data, const Place& centre, const Vector3d& normal_W, double area) const;
 
  private:
   std::vector<ShadingBody> bodies_;

@@ -61,7 +61,7 @@ ForceResult SolarPressure::calc(const Tree& tree, const TreeData& data, Loads* l
   demand_outside(panel_.shadow, k.p, name(), data.t);
   const Vector3d n_W = k.R * panel_.normal;
   double light = calc_sunlight(panel_.shadow, k.p, panel_.sun_W);
-  if (!panel_.shading.is_empty()) light *= panel_.shading.calc_lit_share_of_disc(data, k.p, n_W, panel_.area);
+  if (!panel_.shading.is_empty()) light *= panel_.shading.calc_lit_share_of_disc(data, k.place, n_W, panel_.area);
   const Vector3d f = calc_panel_force(panel_, n_W, light * panel_.area);
   if (loads != nullptr) loads->add_wrench(marker_, f, Vector3d::Zero());
   ForceResult result;

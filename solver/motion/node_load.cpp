@@ -26,14 +26,14 @@ std::vector<NodeSource> list_node_sources(const Tree& tree, const Loops& loops, 
 namespace {
 
 /// A wrench on the child at `at` (in W), in axes R_WH, as one on the node of `body`.
-Vector6d bring_to_node(const NodeSource& source, int body, const Motion& motion, const Matrix3d& R_WH,
-                       const Vector3d& at, const Vector3d& force_H, const Vector3d& moment_H) {
+Vector6d bring_to_node(const NodeSource& source, int body, const Motion& motion, const Matrix3d& R_WH, const Place& at,
+                       const Vector3d& force_H, const Vector3d& moment_H) {
   const Matrix3d& R_WB = motion.get_state(body).R_WB;
   const Matrix3d R_BH = R_WB.transpose() * R_WH;
   const double sign = source.is_parent ? -1 : 1;
   const Vector3d force = sign * (R_BH * force_H);
   const NodeMotion node = calc_node_motion(motion, body, source.node);
-  const Vector3d arm = R_WB.transpose() * (at - node.p_WK);
+  const Vector3d arm = R_WB.transpose() * (at - node.place());
   Vector6d load;
   load << force, sign * (R_BH * moment_H) + arm.cross(force);
   return load;
@@ -57,10 +57,9 @@ Vector6d calc_node_load(const NodeSource& source, int body, const Motion& motion
     if (b < 0) return on_ground;
     return data[b].state.R_WB * data.markers[static_cast<size_t>(marker)].R;
   };
-  const auto get_place = [&](int b, int marker, const Vector3d& on_ground) -> Vector3d {
-    if (b < 0) return on_ground;
-    const BodyState& s = data[b].state;
-    return s.p_WBo + s.R_WB * data.markers[static_cast<size_t>(marker)].r;
+  const auto get_place = [&](int b, int marker, const Vector3d& on_ground) -> Place {
+    if (b < 0) return {on_ground, on_ground};
+    return data[b].state.calc_place(data.markers[static_cast<size_t>(marker)].r);
   };
   if (source.hinge >= 0) {
     // On the child at Hc's origin, in Hp.

@@ -147,6 +147,8 @@ class Shading(ProgramTest):
                 found = self.bough("check", "s.toml", code=1).stderr
                 self.assertIn(error, found)
                 self.assertRegex(found, r"s\.toml:\d+: error")
+        self.write_system([box], [])
+        self.assertRegex(self.bough("check", "s.toml", code=1).stderr, r"s\.toml:\d+: error: .*shaded_by")
         self.write_system([box], ["box"])
         with open(self.path("s.toml")) as f:
             text = f.read()
